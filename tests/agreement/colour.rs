@@ -2,6 +2,7 @@
 
 use crate::sources::rod;
 use crate::trial::{Way, agree, measures};
+use std::f64::consts::PI;
 
 /// A rod that disperses and absorbs by wavelength, with a mirror around it and the given lamps.
 fn coloured_rod(sources: &str) -> String {
@@ -111,4 +112,156 @@ fn a_radiant_flux_has_the_lumens_of_its_spectrum() {
     assert!(found.balance.residual.value.abs() < 1e-9 * found.source_flux, "{:?}", found.balance);
     let efficacy = found.values["exit.luminous_efficacy"].value;
     assert!((efficacy / 683.002 - 1.0).abs() < 1e-4, "{efficacy}");
+}
+
+/// u' and v' of 546.1 and 589.3 nm, from the colour matching functions of CIE 1931 (CIE 018:2019, table 6), linear in between.
+const GREEN_UV: [f64; 2] = [0.098_966, 0.583_708];
+const SODIUM_UV: [f64; 2] = [0.326_388, 0.550_879];
+const SODIUM: &str = "spectrum = { line_nm = 589.3 }";
+
+/// Two beams, each on a cell of its own: the cells have exactly the colours of the beams, and the mean lies between.
+#[test]
+fn cells_have_the_colours_of_their_beams() {
+    let beam = |name: &str, x: f64, flux: f64, spectrum: &str| {
+        format!(
+            "[sources.{name}.disk]\nradius_mm = 1\nflux_lm = {flux}\n{spectrum}\nemission = {{ cone_half_angle_deg = 10 }}\nat = {{ position_mm = [{x}, 0, 0] }}\n"
+        )
+    };
+    let text = beam("green", -2.0, 3.0, LINE)
+        + &beam("sodium", 2.0, 1.0, SODIUM)
+        + "[sensors]\nwall = { plane = { rectangle = { width_mm = 8, height_mm = 8 }, cells = [2, 1] }, at = { position_mm = [0, 0, 5], axis = [0, 0, -1], x_axis = [1, 0, 0] } }\n\
+           far = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }\n";
+    for way in [Way::Forward, Way::Backward, Way::Mixed] {
+        let found = measures(&text, way);
+        let colours = found.maps[0].colours.as_ref().unwrap();
+        let of = |cell: usize| [colours.u[[0, cell]], colours.v[[0, cell]]];
+        for (cell, expected) in [GREEN_UV, SODIUM_UV].into_iter().enumerate() {
+            for (own, expected) in of(cell).into_iter().zip(expected) {
+                assert!((own - expected).abs() < 1e-5, "{} {cell}: {own}", way.name());
+            }
+            // A line is 0.01 nm wide.
+            assert!(colours.u_std_errors[[0, cell]] < 1e-5, "{}", way.name());
+        }
+        // The colours are 0.229 779 apart, and the first has 0.738 990 of X + 15Y + 3Z.
+        for (end, expected) in [("", 0.169_805), ("_rms", 0.100_916)] {
+            let own = &found.values[&format!("wall.colour_nonuniformity{end}")];
+            let error = 4.0 * own.std_error + 1e-5;
+            assert!(
+                (own.value - expected).abs() < error && error < 0.03,
+                "{}: {own:?}",
+                way.name()
+            );
+        }
+    }
+}
+
+/// Illuminance from a Lambertian point at one end of a square tube of perfect mirrors, 6 mm wide and 3 mm long, in 4 x 4 cells of the other: the
+/// sum of I cos θ / d² = Φ L² / (π (L² + r²)²) over the images, per lm, as shares of the light.
+fn kaleidoscope([x, y]: [f64; 2]) -> Vec<f64> {
+    const PARTS: i32 = 24;
+    let image = |own: f64, m: i32| 6.0 * f64::from(m) + if m % 2 == 0 { own } else { -own };
+    let mut cells = vec![0.0; 16];
+    for (row, column) in (0..PARTS).flat_map(|row| (0..PARTS).map(move |column| (row, column))) {
+        let [u, v] = [column, row].map(|at| 6.0 * (f64::from(at) + 0.5) / f64::from(PARTS) - 3.0);
+        let images = (-40..=40).flat_map(|m| (-40..=40).map(move |n| (m, n)));
+        let sum: f64 = images
+            .map(|(m, n)| {
+                let square: f64 = (image(x, m) - u).powi(2) + (image(y, n) - v).powi(2);
+                9.0 / (PI * (9.0 + square).powi(2))
+            })
+            .sum();
+        cells[(row / 6 * 4 + column / 6) as usize] += sum * 36.0 / f64::from(PARTS * PARTS);
+    }
+    // Farther images light all cells alike.
+    let rest = (1.0 - cells.iter().sum::<f64>()) / 16.0;
+    cells.into_iter().map(|own| own + rest).collect()
+}
+
+#[test]
+fn a_mirrored_tube_mixes_colours_as_its_images_do() {
+    let point = |name: &str, [x, y]: [f64; 2], spectrum: &str| {
+        format!(
+            "[sources.{name}.point]\nflux_lm = 1\n{spectrum}\nemission = \"lambertian\"\nat = {{ position_mm = [{x}, {y}, 0] }}\n"
+        )
+    };
+    let places = [[-1.5, 0.5], [2.0, -1.0]];
+    let text = "[finishes.mirror]\nspecular = { reflectance = 1 }\n[sheets.tube.tube]\nprofile = { rectangle = { width_mm = 6, height_mm = 6 } }\n\
+        path = [{ straight_mm = 3 }]\nfinish = \"mirror\"\n"
+        .to_owned()
+        + &point("green", places[0], LINE)
+        + &point("sodium", places[1], SODIUM)
+        + "[sensors]\nexit = { plane = { cells = [4, 4] }, on = \"tube.exit\", counts = \"leaving\" }\n";
+    let lights = places.map(kaleidoscope);
+    let sums = [GREEN_UV, SODIUM_UV].map(|[_, v]| 9.0 / v);
+    // The colour of a mixture by X + 15Y + 3Z, 9Y/v' of each light.
+    let mixed = |shares: [f64; 2]| -> [f64; 2] {
+        let [a, b] = [shares[0] * sums[0], shares[1] * sums[1]];
+        [0, 1].map(|place| (a * GREEN_UV[place] + b * SODIUM_UV[place]) / (a + b))
+    };
+    let expected: Vec<[f64; 2]> =
+        (0..16).map(|cell| mixed([lights[0][cell], lights[1][cell]])).collect();
+    let weight = |cell: usize| lights[0][cell] * sums[0] + lights[1][cell] * sums[1];
+    let mean = mixed([1.0, 1.0]);
+    let square = |cell: usize| -> f64 {
+        expected[cell].iter().zip(mean).map(|(own, mean)| (own - mean).powi(2)).sum()
+    };
+    let largest = (0..16).map(square).fold(0.0, f64::max).sqrt();
+    let rms = ((0..16).map(|cell| weight(cell) * square(cell)).sum::<f64>()
+        / (0..16).map(weight).sum::<f64>())
+    .sqrt();
+    // A path from a sensor cannot meet a point.
+    for way in [Way::Forward, Way::Mixed] {
+        let found = measures(&text, way);
+        let colours = found.maps[0].colours.as_ref().unwrap();
+        let both = [(&colours.u, &colours.u_std_errors), (&colours.v, &colours.v_std_errors)];
+        let scores = both.into_iter().enumerate().flat_map(|(place, (values, errors))| {
+            let cells = values.iter().zip(errors).zip(&expected);
+            cells.map(move |((value, error), expected)| (value - expected[place]) / error)
+        });
+        let scores: Vec<f64> = scores.collect();
+        let rms_score = (scores.iter().map(|z| z * z).sum::<f64>() / 32.0).sqrt();
+        let worst = scores.iter().fold(0.0f64, |worst, z| worst.max(z.abs()));
+        // u' and v' of mixtures of two lights move together: 16 independent scores, whose mean square has a deviation of 0.35.
+        assert!(worst < 4.0 && (0.3..1.6).contains(&rms_score), "{}: {scores:?}", way.name());
+        for (end, expected) in [("", largest), ("_rms", rms)] {
+            let own = &found.values[&format!("exit.colour_nonuniformity{end}")];
+            let score = (own.value - expected) / own.total_error();
+            assert!(
+                score.abs() < 4.0 && own.total_error() < 0.03 * expected,
+                "{expected}: {own:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn estimators_find_the_same_colours_in_cells() {
+    let lamp = |name: &str, x: f64, spectrum: &str| {
+        format!(
+            "[sources.{name}.disk]\nradius_mm = 0.8\nflux_lm = 4\n{spectrum}\nat = {{ position_mm = [{x}, 0, -1] }}\n"
+        )
+    };
+    let text = coloured_rod(&(lamp("cold", -1.5, COLD) + &lamp("red", 1.5, RED)))
+        .replace("cells = [2, 1]", "cells = [6, 5]");
+    let all = [Way::Forward, Way::Backward, Way::Mixed].map(|way| measures(&text, way));
+    let [forward, others @ ..] = &all;
+    let expected = forward.maps[0].colours.as_ref().unwrap();
+    for found in others {
+        let own = found.maps[0].colours.as_ref().unwrap();
+        let pairs = [
+            ((&own.u, &own.u_std_errors), (&expected.u, &expected.u_std_errors)),
+            ((&own.v, &own.v_std_errors), (&expected.v, &expected.v_std_errors)),
+        ];
+        for ((values, errors), (reference, their_errors)) in pairs {
+            let scores: Vec<f64> = (values.iter().zip(errors))
+                .zip(reference.iter().zip(their_errors))
+                .filter(|((value, _), _)| value.is_finite())
+                .map(|((value, error), (other, their))| (value - other) / error.hypot(*their))
+                .collect();
+            let rms = (scores.iter().map(|z| z * z).sum::<f64>() / scores.len() as f64).sqrt();
+            let worst = scores.iter().fold(0.0f64, |worst, z| worst.max(z.abs()));
+            // Both coordinates of up to 30 cells: a mean square is known to a quarter.
+            assert!(scores.len() > 20 && worst < 4.0 && rms < 1.5, "rms {rms}, worst {worst}");
+        }
+    }
 }

@@ -2,8 +2,9 @@
 //! tables, spreadsheets, pictures and pages.
 
 use crate::png::{MapCells, MapGeometry, MapPlaces};
-use lumiduct_core::measure::{IntensityTable, MapAxes, SensorMap, not_below_zero};
-use ndarray::Array2;
+use glam::DVec3;
+use lumiduct_core::measure::{ColourTable, IntensityTable, MapAxes, SensorMap, not_below_zero};
+use ndarray::{Array2, Zip};
 
 /// What the coordinates of a grid are called.
 #[derive(Debug, PartialEq)]
@@ -75,6 +76,8 @@ pub(crate) struct CellGrid<'a> {
     pub(crate) values: &'a Array2<f64>,
     pub(crate) std_errors: &'a Array2<f64>,
     pub(crate) biases: Option<&'a Array2<f64>>,
+    /// Chromaticities, where light has a colour.
+    pub(crate) colours: Option<&'a ColourTable>,
     /// Share of each cell on the sensor, 1.
     pub(crate) on_sensor: Option<&'a Array2<f64>>,
 }
@@ -95,6 +98,7 @@ impl<'a> From<&'a SensorMap> for CellGrid<'a> {
             values: &map.values,
             std_errors: &map.std_errors,
             biases: map.biases.as_ref(),
+            colours: map.colours.as_ref(),
             on_sensor: Some(&map.on_sensor),
         }
     }
@@ -111,12 +115,26 @@ impl<'a> From<&'a IntensityTable> for CellGrid<'a> {
             values: &table.values,
             std_errors: &table.std_errors,
             biases: table.biases.as_ref(),
+            colours: table.colours.as_ref(),
             on_sensor: None,
         }
     }
 }
 
-impl CellGrid<'_> {
+impl<'a> CellGrid<'a> {
+    /// Chromaticities and their errors with their names in tables; none without colours.
+    pub(crate) fn colour_columns(&self) -> impl Iterator<Item = (&'static str, &'a Array2<f64>)> {
+        let columns = self.colours.map(|own| {
+            [
+                ("colour_u", &own.u),
+                ("colour_v", &own.v),
+                ("colour_u.std_error", &own.u_std_errors),
+                ("colour_v.std_error", &own.v_std_errors),
+            ]
+        });
+        columns.into_iter().flatten()
+    }
+
     /// The cells for pictures and pages, which show no light below zero.
     pub(crate) fn cells(&self) -> MapCells {
         MapCells {
@@ -125,6 +143,39 @@ impl CellGrid<'_> {
             values: self.values.mapv(not_below_zero),
             errors: self.std_errors.clone(),
             biases: self.biases.cloned(),
+            stimuli: self.colours.map(|colours| stimuli(self.values, colours)),
         }
+    }
+}
+
+/// Tristimulus values of cells from their chromaticities, with Y in the unit of their values; dark cells have none, and those outside of the
+/// sensor are NaN.
+fn stimuli(values: &Array2<f64>, colours: &ColourTable) -> Array2<DVec3> {
+    Zip::from(values).and(&colours.u).and(&colours.v).map_collect(|&value, &u, &v| {
+        if value <= 0.0 || (value.is_finite() && v.is_nan()) {
+            return DVec3::ZERO;
+        }
+        // The inverse of CIE 15:2018, eq. 8.2.
+        value * DVec3::new(9.0 * u, 4.0 * v, 12.0 - 3.0 * u - 20.0 * v) / (4.0 * v)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::png::uv;
+    use ndarray::array;
+
+    #[test]
+    fn stimuli_have_their_chromaticity_and_value() {
+        let u = array![[0.2, f64::NAN, f64::NAN]];
+        let v = array![[0.5, f64::NAN, f64::NAN]];
+        let colours = ColourTable { u_std_errors: u.clone(), v_std_errors: v.clone(), u, v };
+        let found = stimuli(&array![[3.0, 0.0, f64::NAN]], &colours);
+        let [u, v] = uv(found[[0, 0]]);
+        assert!((u - 0.2).abs() < 1e-12 && (v - 0.5).abs() < 1e-12);
+        assert!((found[[0, 0]].y - 3.0).abs() < 1e-12);
+        assert_eq!(found[[0, 1]], DVec3::ZERO);
+        assert!(found[[0, 2]].is_nan());
     }
 }

@@ -6,8 +6,8 @@
 use crate::by_light::{self, LightMatrix, from_light, matrix, remark_on_totals, sum_over_weathers};
 use crate::csv::{intensity_name, map_name, map_words};
 use crate::figures::{
-    BOUNCES_SHOWN, bounce_plot, directions_map, intensity_plot, sensor_map, spectrum_plot,
-    where_and_when,
+    BOUNCES_SHOWN, bounce_plot, directions_map, has_sectors, intensity_plot, sensor_map,
+    spectrum_plot, where_and_when,
 };
 use crate::html::data;
 use crate::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
@@ -133,8 +133,7 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
         blocks.push(plots.add(label, polar, picture));
         let sum = sum_over_weathers(intensity.weathers);
         let label = sum.map_or(String::new(), |words| format!(", {words}"));
-        // A goniometer without sectors does not resolve azimuths.
-        if intensity.values.ncols() > 1 {
+        if has_sectors(intensity) {
             let label = format!("intensity{light} by direction{label}");
             blocks.push(plots.add(label, data::map(&directions_map(intensity)), None));
         }

@@ -75,6 +75,7 @@ fn grid_table(name: &str, grid: &CellGrid<'_>) -> Result<OutputFile> {
     header.extend([format!("{quantity}_{unit}"), format!("std_error_{unit}")]);
     header.extend(grid.biases.map(|_| format!("bias_{unit}")));
     header.extend(grid.on_sensor.map(|_| "on_sensor".to_owned()));
+    header.extend(grid.colour_columns().map(|(name, _)| name.replace('.', "_")));
     let cells = grid.values.indexed_iter().filter(|(_, value)| value.is_finite());
     let rows = cells.map(|(at, value)| {
         let ends = [[x[at.1], x[at.1 + 1]], [y[at.0], y[at.0 + 1]]];
@@ -84,6 +85,7 @@ fn grid_table(name: &str, grid: &CellGrid<'_>) -> Result<OutputFile> {
         };
         row.extend([*value, grid.std_errors[at]]);
         row.extend([grid.biases, grid.on_sensor].into_iter().flatten().map(|of| of[at]));
+        row.extend(grid.colour_columns().map(|(_, of)| of[at]));
         numbers(row)
     });
     table(format!("{name}.csv"), &header, rows)

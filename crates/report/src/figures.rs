@@ -7,6 +7,7 @@ use crate::key_figures::is_one_cell;
 use crate::png::{
     AxisScale, Bar, BarChart, ColourMap, ErrorForm, HeatMap, LinePlot, PlotSeries, PolarCurve,
     PolarPlot, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
+    true_colour_map,
 };
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
@@ -23,12 +24,26 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let mut files = Vec::new();
     for map in measures.maps.iter().filter(|map| !is_one_cell(map)) {
         files.push(OutputFile { name: format!("{}.png", map_name(map)), bytes: map_picture(map)? });
+        let in_colour = match &map.axes {
+            MapAxes::Cartesian { .. } | MapAxes::Angular { .. } => {
+                true_colour_map(&in_true_colour(sensor_map(map)))
+            }
+            MapAxes::Polar { .. } => None,
+        };
+        if let Some(bytes) = in_colour {
+            files.push(OutputFile { name: format!("{}.colour.png", map_name(map)), bytes: bytes? });
+        }
     }
     for table in &measures.intensities {
-        files.push(OutputFile {
-            name: format!("{}.png", intensity_name(table)),
-            bytes: polar_plot(&intensity_plot(table))?,
-        });
+        let name = intensity_name(table);
+        let bytes = polar_plot(&intensity_plot(table))?;
+        files.push(OutputFile { name: format!("{name}.png"), bytes });
+        let in_colour = has_sectors(table)
+            .then(|| true_colour_map(&in_true_colour(directions_map(table))))
+            .flatten();
+        if let Some(bytes) = in_colour {
+            files.push(OutputFile { name: format!("{name}.colour.png"), bytes: bytes? });
+        }
     }
     for spectrum in &measures.spectra {
         let bytes = line_plot(&spectrum_plot(spectrum))?;
@@ -46,6 +61,17 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
 /// The map of a sensor in the plane of its face, or of its image.
 pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
     drawn(&map.into(), format!("{}: {}", map.sensor, map_words(map)), mean_words(map))
+}
+
+/// A map under the title of its picture in true colour.
+fn in_true_colour(map: HeatMap) -> HeatMap {
+    let subtitle = "as a screen shows its light (sRGB, white of D65)".to_owned();
+    HeatMap { title: format!("{}, true colour", map.title), subtitle, ..map }
+}
+
+/// Whether a goniometer resolves azimuths.
+pub(crate) fn has_sectors(table: &IntensityTable) -> bool {
+    table.values.ncols() > 1
 }
 
 /// The intensity of a goniometer by both of its angles.

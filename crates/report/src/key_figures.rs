@@ -14,7 +14,7 @@ pub(crate) struct KeyFigure<'r> {
 }
 
 /// The last parts of the names of measures, what a reader calls them, and whether a terminal shows them.
-const FIGURES: [(&str, &str, bool); 14] = [
+const FIGURES: [(&str, &str, bool); 15] = [
     ("flux", "flux", true),
     ("efficiency", "efficiency", true),
     ("transmission", "transmission", true),
@@ -29,6 +29,7 @@ const FIGURES: [(&str, &str, bool); 14] = [
     ("colour_temperature", "colour temperature", true),
     ("colour_rendering_ra", "Ra", false),
     ("colour_rendering_r9", "R9", false),
+    ("colour_nonuniformity", "colour nonuniformity Δu'v'", true),
 ];
 
 /// Flux, efficiency, and the main figures of the kind of sensor.
@@ -57,6 +58,10 @@ pub(crate) fn key_figures<'r>(measures: &'r Measures, sensor: &str) -> Vec<KeyFi
         if !is_one_cell(map) {
             let label = format!("uniformity min/avg{of_view}");
             figures.extend(named("uniformity_min_avg", label, false));
+            if map.view.is_some() {
+                let label = format!("colour nonuniformity Δu'v'{of_view}");
+                figures.extend(named("colour_nonuniformity", label, false));
+            }
         }
     }
     figures

@@ -58,6 +58,9 @@ fn arrays(grids: &[(String, CellGrid<'_>)]) -> ZipResult<Vec<u8>> {
         if let Some(biases) = grid.biases {
             out.add(&format!("{name}.bias_{unit}"), &shape, biases)?;
         }
+        for (head, values) in grid.colour_columns() {
+            out.add(&format!("{name}.{head}"), &shape, values)?;
+        }
     }
     Ok(out.0.finish()?.into_inner())
 }

@@ -4,6 +4,7 @@ mod chromaticity;
 mod dominant;
 mod draw;
 mod observer;
+mod phosphor;
 mod rendering;
 mod spectrum;
 mod standard;
@@ -16,6 +17,7 @@ pub use dominant::{DominantWavelength, WavelengthKind, dominant_wavelength};
 pub use draw::SpectralDraw;
 pub(crate) use observer::colour_matching;
 pub use observer::{MAX_EFFICACY, VISIBLE};
+pub use phosphor::PhosphorWhite;
 pub use rendering::{ColourRendering, colour_rendering};
 pub use spectrum::{NoSpectrum, Spectrum};
 pub use standard::{

@@ -87,12 +87,16 @@ fn slope([_, b, c, d, e]: &[f64; 5], at: f64) -> f64 {
 
 fn locus() -> Vec<[f64; 2]> {
     let observer = observer();
-    let uv = |reciprocal: usize| planckian(&observer, 1e6 / reciprocal as f64).uv_1960();
+    let uv = |reciprocal: usize| radiator(&observer, 1e6 / reciprocal as f64).uv_1960();
     (FIRST..=LAST).map(uv).collect()
 }
 
-/// The chromaticity of a Planckian radiator of a temperature in K.
-fn planckian(observer: &[(f64, [f64; 3])], kelvin: f64) -> Chromaticity {
+/// The chromaticity of a Planckian radiator of a temperature in K, above 900.
+pub(super) fn planckian(kelvin: f64) -> Chromaticity {
+    radiator(&observer(), kelvin)
+}
+
+fn radiator(observer: &[(f64, [f64; 3])], kelvin: f64) -> Chromaticity {
     let mut sums = [0.0; 3];
     for (nm, matching) in observer {
         let value = planck(*nm, kelvin, SECOND_RADIATION);
@@ -123,7 +127,7 @@ mod tests {
         assert_eq!(observer[470].0, 830.0);
         for step in 0..400 {
             let kelvin = 1001.0 * (24_990.0_f64 / 1001.0).powf(f64::from(step) / 399.0);
-            let own = correlated_colour_temperature(planckian(&observer, kelvin)).unwrap();
+            let own = correlated_colour_temperature(radiator(&observer, kelvin)).unwrap();
             assert!((own.kelvin / kelvin - 1.0).abs() < 1e-7, "{kelvin} {own:?}");
             assert!(own.duv.abs() < 1e-9, "{kelvin} {own:?}");
         }
@@ -196,7 +200,7 @@ mod tests {
         for kelvin in [1500.0, 3000.0, 5000.0, 9000.0, 20_000.0] {
             let [[u, v], [later_u, later_v], [earlier_u, earlier_v]] =
                 [kelvin, kelvin * 0.9999, kelvin * 1.0001]
-                    .map(|kelvin| planckian(&observer, kelvin).uv_1960());
+                    .map(|kelvin| radiator(&observer, kelvin).uv_1960());
             let [tu, tv] = [later_u - earlier_u, later_v - earlier_v];
             let length = tu.hypot(tv);
             for duv in [-0.045, -0.02, 0.02, 0.045] {

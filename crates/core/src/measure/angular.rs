@@ -8,10 +8,11 @@
 #[cfg(test)]
 mod tests;
 
+use crate::measure::cell_colours::ColouredCells;
 use crate::measure::evidence::{Evidence, status_by_error};
 use crate::measure::light::LightSelection;
 use crate::measure::noisy::{Noisy, WeightedValue};
-use crate::measure::{Measure, Status, beam, uniformity};
+use crate::measure::{ColourTable, Measure, Status, beam, uniformity};
 use crate::scene::{Goniometer, SensorId};
 use indexmap::IndexMap;
 use ndarray::Array2;
@@ -46,6 +47,9 @@ pub struct IntensityTable {
     pub std_errors: Array2<f64>,
     /// Indicators of bias, same layout; `None` for unbiased estimates.
     pub biases: Option<Array2<f64>>,
+    /// Colours of the cells, of all light, where it has spectra; they are tables of their own.
+    #[serde(skip)]
+    pub colours: Option<ColourTable>,
     /// Edges of the rings, deg.
     pub gamma_deg: Vec<f64>,
     /// Edges of the sectors, deg.
@@ -191,6 +195,7 @@ pub(crate) fn table(
         values: cells(|cell| cell.value),
         std_errors: cells(|cell| cell.std_error),
         biases: None,
+        colours: colours(evidence, id, goniometer, light).map(|own| own.table(sectors)),
         gamma_deg: edges(180.0, rings),
         c_deg: edges(360.0, sectors),
         ring_gamma_deg: ring_gammas(rings).into_iter().map(f64::to_degrees).collect(),
@@ -198,6 +203,19 @@ pub(crate) fn table(
         ring_std_errors: curve.iter().map(|ring| ring.std_error).collect(),
         planes: planes(goniometer).iter().map(|c| plane_curve(&sphere, *c)).collect(),
         radius_mm: goniometer.radius,
+    }
+}
+
+/// The colours of all light on the sphere; `None` without spectra.
+fn colours(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    goniometer: &Goniometer,
+    light: LightSelection,
+) -> Option<ColouredCells> {
+    match light {
+        LightSelection::All => ColouredCells::of(evidence, id, 0..goniometer.cells()),
+        LightSelection::Group(_) => None,
     }
 }
 
@@ -224,6 +242,15 @@ pub(crate) fn measures(
     out.insert(format!("intensity_axis{from}"), axis);
     let angles = angles(evidence, &sphere, &curve).into_iter();
     out.extend(angles.map(|(name, angle)| (format!("{name}{from}"), angle)));
+    if let Some(colours) = colours(evidence, id, goniometer, light) {
+        let rings = 0..goniometer.gamma_cells;
+        let levels = rings.flat_map(|ring| {
+            let sectors = 0..goniometer.c_cells;
+            let intensity = |sector| Some(sphere.intensity(ring, &[sector]).value);
+            sectors.map(intensity).collect::<Vec<_>>()
+        });
+        out.extend(colours.spread(evidence, levels));
+    }
     match light {
         LightSelection::All => zones(evidence, &sphere, &curve, &mut out),
         LightSelection::Group(_) => {}

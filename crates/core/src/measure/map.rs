@@ -4,6 +4,8 @@
 #[cfg(test)]
 mod tests;
 
+use crate::measure::ColourTable;
+use crate::measure::cell_colours::ColouredCells;
 use crate::measure::cells::SensorCells;
 use crate::measure::evidence::Evidence;
 use crate::measure::light::LightSelection;
@@ -40,6 +42,9 @@ pub struct SensorMap {
     pub std_errors: Array2<f64>,
     /// Indicators of bias, same layout; `None` for unbiased estimates.
     pub biases: Option<Array2<f64>>,
+    /// Colours of the cells, of all light, where it has spectra; they are tables of their own.
+    #[serde(skip)]
+    pub colours: Option<ColourTable>,
     /// The fraction of each cell that lies on the sensor, 1; 0 outside. Cells with at least half
     /// count individually for the extremes, others together with their neighbours along the rim.
     pub on_sensor: Array2<f64>,
@@ -156,10 +161,27 @@ fn map(
         values: read(|cell| cell.value),
         std_errors: read(|cell| cell.std_error),
         biases: None,
+        colours: colours(evidence, id, sensor, light, view).map(|own| own.table(columns)),
         on_sensor: table(&|cell| seen.cover(cell)),
         axes: axes(sensor),
         area_mm2: sensor.area(),
         summary: summary(evidence, sensor, &seen),
+    }
+}
+
+/// The colours of the cells of a map of all light; `None` without spectra.
+pub(crate) fn colours(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    sensor: &SurfaceSensor,
+    light: LightSelection,
+    view: Option<usize>,
+) -> Option<ColouredCells> {
+    let (columns, rows) = map_grid(sensor).shape();
+    let first = view.unwrap_or(0) * columns * rows;
+    match light {
+        LightSelection::All => ColouredCells::of(evidence, id, first..first + columns * rows),
+        LightSelection::Group(_) => None,
     }
 }
 

@@ -9,9 +9,11 @@
 mod angular;
 mod balance;
 mod beam;
+mod cell_colours;
 mod cells;
 mod check;
 mod colour;
+mod colour_spread;
 mod evidence;
 mod extremes;
 mod flux;
@@ -39,6 +41,7 @@ mod value;
 
 pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
+pub use cell_colours::ColourTable;
 pub use cells::not_below_zero;
 pub use check::{CheckOutcome, Verdict, nearest, verdict};
 pub use colour::SensorSpectrum;

@@ -11,8 +11,8 @@ use crate::spec::spectrum::{
 };
 use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_core::colour::{
-    DaylightPhase, NoSpectrum, SpectralDraw, SpectralTable, Spectrum, VISIBLE, blackbody,
-    equal_energy, gaussian, illuminant_a, illuminant_d65,
+    DaylightPhase, NoSpectrum, PhosphorWhite, SpectralDraw, SpectralTable, Spectrum, VISIBLE,
+    blackbody, equal_energy, gaussian, illuminant_a, illuminant_d65,
 };
 use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::Scene;
@@ -63,6 +63,10 @@ impl Context<'_> {
             SpectrumSpec::DaylightK(kelvin) => {
                 let phase = DaylightPhase::new(*kelvin)?;
                 (Spectrum::of_law(|nm| phase.at(nm)), key.field("daylight_k"))
+            }
+            SpectrumSpec::PhosphorWhiteK(kelvin) => {
+                let led = PhosphorWhite::new(*kelvin)?;
+                (Spectrum::of_law(|nm| led.at(nm)), key.field("phosphor_white_k"))
             }
             SpectrumSpec::Peak(peak) => {
                 let law = |nm| gaussian(nm, peak.peak_nm, peak.fwhm_nm);

@@ -1,6 +1,7 @@
 //! The cells of a map on a page. Large maps are coarsened; the tables have all cells.
 
 use crate::png::MapCells;
+use glam::DVec3;
 use ndarray::Array2;
 
 /// Most cells of a map on a page; more would make it slow to open.
@@ -27,6 +28,11 @@ pub(crate) fn coarse(cells: &MapCells, side: usize) -> MapCells {
             of(row, column).map(|at| table[at]).sum::<f64>() / of(row, column).count() as f64
         })
     };
+    let mean_stimuli = |table: &Array2<DVec3>| {
+        Array2::from_shape_fn(shape, |(row, column)| {
+            of(row, column).map(|at| table[at]).sum::<DVec3>() / of(row, column).count() as f64
+        })
+    };
     let errors = Array2::from_shape_fn(shape, |(row, column)| {
         let variance: f64 = of(row, column).map(|at| cells.errors[at].powi(2)).sum();
         variance.sqrt() / of(row, column).count() as f64
@@ -38,6 +44,7 @@ pub(crate) fn coarse(cells: &MapCells, side: usize) -> MapCells {
         errors,
         // A bias does not average out.
         biases: cells.biases.as_ref().map(mean),
+        stimuli: cells.stimuli.as_ref().map(mean_stimuli),
     }
 }
 
@@ -62,6 +69,7 @@ mod tests {
                 .unwrap(),
             errors: Array2::from_elem((2, 3), 3.0),
             biases: None,
+            stimuli: None,
         };
         let coarse = coarse(&cells, 2);
         assert_eq!((coarse.x, coarse.y), (vec![0.0, 2.0, 3.0], vec![0.0, 2.0]));

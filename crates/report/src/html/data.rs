@@ -8,7 +8,7 @@ use crate::html::cells::{coarse, joined};
 use crate::local_axes::LocalAxes;
 use crate::png::{
     self, AxisScale, ErrorForm, HeatMap, LinePlot, MapCells, MapFrame, MapPlaces, PolarPlot,
-    SeriesForm, series_ink,
+    SeriesForm, on_screen, series_ink, uv,
 };
 use glam::DVec3;
 use lumiduct_core::measure::{Balance, Measure};
@@ -18,6 +18,8 @@ use serde_json::{Value, json};
 const DIGITS: i32 = 6;
 /// Significant digits of standard errors and biases.
 const ERROR_DIGITS: i32 = 3;
+/// Significant digits of chromaticities.
+const COLOUR_DIGITS: i32 = 4;
 /// Digits of coordinates below the size of a scene.
 const PLACE_DIGITS: i32 = 4;
 
@@ -60,10 +62,16 @@ fn cell_data(cells: &MapCells) -> Value {
     }
     let [values, errors] = with_errors(cells.values.iter().zip(&cells.errors));
     let biases = cells.biases.as_ref().map(|biases| numbers(biases, ERROR_DIGITS));
-    json!({
+    let mut data = json!({
         "plot": "map", "x": numbers(&cells.x, DIGITS), "y": numbers(&cells.y, DIGITS),
         "values": values, "errors": errors, "biases": biases,
-    })
+    });
+    if let Some(stimuli) = &cells.stimuli {
+        data["colours"] = on_screen(stimuli).iter().map(|rgb| json!(rgb)).collect();
+        let of = |place: usize| numbers(&stimuli.map(|own| uv(*own)[place]), COLOUR_DIGITS);
+        data["uv"] = json!([of(0), of(1)]);
+    }
+    data
 }
 
 /// A map as in its picture, with its cells and their names.

@@ -8,8 +8,10 @@ use crate::png::layout::{
     Aspect, Header, MARGIN, PlotAxes, PlotSize, SQUEEZED_REMARK, plot_size, remark,
 };
 use crate::png::marked_axis::MarkedAxis;
-use crate::png::palette::{ColourMap, NEUTRAL};
+use crate::png::palette::{ColourMap, NEUTRAL, Rgb};
 use crate::png::text::TICK;
+use crate::png::true_colour::on_screen;
+use glam::DVec3;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
 use ndarray::Array2;
@@ -76,6 +78,8 @@ pub(crate) struct MapCells {
     pub errors: Array2<f64>,
     /// Bias indicators, where a bias is possible.
     pub biases: Option<Array2<f64>>,
+    /// Tristimulus values X, Y, Z, where light has a colour; Y is the value.
+    pub stimuli: Option<Array2<DVec3>>,
 }
 
 /// Largest size of the map itself, pixels.
@@ -91,14 +95,28 @@ const BAR_GAP: f64 = 26.0;
 /// exceeds the others tenfold does not stretch the bar, which then has a tip. A logarithmic bar
 /// spans at most six decades.
 pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
-    let (axes, size) = map_axes(map);
-    let size = whole_cells(size, &map.cells.values);
-    let frame = PlotAxes::new(axes, [size.width, size.height])?;
+    let size = size_of(map);
     let values = finite(&map.cells.values);
     let bar = ColourBar::new(bar_scale(map, &values, AxisScale::Linear, size))?;
+    let colours = map.cells.values.mapv(|value| bar.colour_of(value));
+    picture(map, &colours, Some(&bar))
+}
+
+/// Draws a map as a screen can show its light, without a bar; `None` without colours.
+pub(crate) fn true_colour_map(map: &HeatMap) -> Option<Result<Vec<u8>>> {
+    let colours = on_screen(map.cells.stimuli.as_ref()?);
+    Some(picture(map, &colours, None))
+}
+
+fn picture(map: &HeatMap, colours: &Array2<Rgb>, bar: Option<&ColourBar>) -> Result<Vec<u8>> {
+    let size = size_of(map);
+    let (axes, _) = map_axes(map);
+    let frame = PlotAxes::new(axes, [size.width, size.height])?;
+    let values = finite(&map.cells.values);
 
     let left = MARGIN + frame.left_margin();
-    let content = left + size.width + BAR_GAP + bar.width() + MARGIN;
+    let beside = bar.map_or(0.0, |bar| BAR_GAP + bar.width());
+    let content = left + size.width + beside + MARGIN;
     let width = content.max(620.0).ceil();
     let left = (left + 0.5 * (width - content)).round();
     let header = Header::new(&map.title, &map.subtitle, width - 2.0 * MARGIN)?;
@@ -111,15 +129,23 @@ pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(width as usize, height.ceil() as usize);
     let area = Rect::new(left, top, size.width, size.height);
     header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
-    draw_cells(&mut canvas, area, &map.cells.values, &bar);
+    draw_cells(&mut canvas, area, colours);
     frame.draw(&mut canvas, area)?;
-    bar.draw(&mut canvas, Rect::new(area.right + BAR_GAP, top, BAR_WIDTH, size.height))?;
+    if let Some(bar) = bar {
+        bar.draw(&mut canvas, Rect::new(area.right + BAR_GAP, top, BAR_WIDTH, size.height))?;
+    }
     for (index, text) in remarks.iter().enumerate() {
         let y = area.bottom + frame.bottom_margin() + 14.0 + (index + 1) as f64 * TICK.line_step();
         let text = TICK.fit(text, width - 2.0 * MARGIN)?;
         remark(&mut canvas, &text, [MARGIN, y - 5.0])?;
     }
     canvas.into_png()
+}
+
+/// The size of a map in its picture, pixels.
+fn size_of(map: &HeatMap) -> PlotSize {
+    let (_, size) = map_axes(map);
+    whole_cells(size, &map.cells.values)
 }
 
 /// The axes of a map, and the size at which it is drawn, pixels.
@@ -202,8 +228,8 @@ fn whole_cells(size: PlotSize, values: &Array2<f64>) -> PlotSize {
     }
 }
 
-fn draw_cells(canvas: &mut Canvas, area: Rect, values: &Array2<f64>, bar: &ColourBar) {
-    let (rows, columns) = values.dim();
+fn draw_cells(canvas: &mut Canvas, area: Rect, colours: &Array2<Rgb>) {
+    let (rows, columns) = colours.dim();
     if rows == 0 || columns == 0 {
         return canvas.bitmap(area, |_, _| NEUTRAL);
     }
@@ -211,7 +237,7 @@ fn draw_cells(canvas: &mut Canvas, area: Rect, values: &Array2<f64>, bar: &Colou
     canvas.bitmap(area, |x, y| {
         let row = rows - 1 - (2 * y + 1) * rows / (2 * height);
         let column = (2 * x + 1) * columns / (2 * width);
-        bar.colour_of(values[[row, column]])
+        colours[[row, column]]
     });
 }
 
@@ -266,6 +292,7 @@ mod tests {
                     errors: values.clone(),
                     values,
                     biases: None,
+                    stimuli: None,
                 },
                 colours: ColourMap::Sequential,
                 limits: None,

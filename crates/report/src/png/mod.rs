@@ -17,6 +17,7 @@ mod palette;
 mod polar_plot;
 mod scatter_matrix;
 mod text;
+mod true_colour;
 
 pub(crate) use axis::AxisScale;
 pub(crate) use bar_chart::Bar;
@@ -25,7 +26,9 @@ pub(crate) use colour_bar::BarScale;
 pub(crate) use cross_section::{
     CrossSection, NamedPlace, PlaceOf, RayEnd, RayPath, SurfaceDots, cross_section,
 };
-pub(crate) use heat_map::{HeatMap, MapCells, MapFrame, MapGeometry, MapPlaces, heat_map};
+pub(crate) use heat_map::{
+    HeatMap, MapCells, MapFrame, MapGeometry, MapPlaces, heat_map, true_colour_map,
+};
 pub(crate) use line_plot::{
     ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot, stacked_plots,
 };
@@ -36,6 +39,7 @@ pub(crate) use palette::{SeriesInk, curve_colours, series_ink};
 pub(crate) use polar_plot::dial_axis;
 pub(crate) use polar_plot::{PolarCurve, PolarPlot, polar_plot};
 pub(crate) use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
+pub(crate) use true_colour::{on_screen, uv};
 
 #[cfg(test)]
 mod tests {

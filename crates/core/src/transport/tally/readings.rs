@@ -21,7 +21,7 @@ pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
 /// Format of the serialised readings.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// Sums over the batches of one group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

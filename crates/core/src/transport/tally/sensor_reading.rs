@@ -1,6 +1,7 @@
 //! The counts of one sensor, and the light that it counts.
 
 use crate::scene::{LightGroupId, Scene, SensorId, SourceId};
+use crate::transport::tally::cell_colours::CellColours;
 use crate::transport::tally::cells::Cells;
 use crate::transport::tally::colour::{Stimuli, Stimulus};
 use crate::transport::{Layout, TAILS};
@@ -42,6 +43,8 @@ pub struct SensorReading {
     pub cells: Cells,
     /// The part of it from each light group.
     pub groups: Vec<Cells>,
+    /// The colour of all of it; `None` without spectra.
+    pub colours: Option<CellColours>,
     /// Flux per depth of path, lm or W.
     pub depths: Cells,
     /// Flux by path class.
@@ -79,6 +82,7 @@ impl SensorReading {
         Self {
             cells: Cells::new(cells),
             groups: scene.light.ids().map(|_| Cells::new(cells)).collect(),
+            colours: scene.is_spectral().then(|| CellColours::new(cells)),
             depths: Cells::new(DEPTH_BINS),
             classes: BTreeMap::new(),
         }
@@ -88,6 +92,7 @@ impl SensorReading {
     pub(crate) fn close_batch(&mut self) {
         self.cells.close_batch();
         self.groups.iter_mut().for_each(Cells::close_batch);
+        self.colours.iter_mut().for_each(CellColours::close_batch);
         self.depths.close_batch();
     }
 
@@ -107,9 +112,12 @@ impl SensorReading {
         act(&mut self.cells, &other.cells);
         self.groups.iter_mut().zip(&other.groups).for_each(|(own, other)| act(own, other));
         act(&mut self.depths, &other.depths);
+        if let (Some(own), Some(other)) = (&mut self.colours, &other.colours) {
+            own.each(other, act);
+        }
     }
 
-    /// Counts light in a cell, as all light and as that of the light groups of its source.
+    /// Counts light in a cell, as all light, as that of the light groups of its source, and by its colour.
     #[inline]
     pub(crate) fn add_to_cell(
         &mut self,
@@ -118,6 +126,9 @@ impl SensorReading {
         groups: &[LightGroupId],
     ) {
         self.cells.add(cell, light.flux);
+        if let Some(colours) = &mut self.colours {
+            colours.add(cell, light.flux, light.wavelength);
+        }
         for group in groups {
             self.groups[group.index()].add(cell, light.flux);
         }

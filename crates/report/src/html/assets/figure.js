@@ -24,15 +24,19 @@ function layOut(figure, kind, hint) {
 
 // A button that switches between a linear and a logarithmic scale, where there are both.
 function scaleSwitch(controls, scales, draw) {
-  if (!scales.log) return draw("linear");
-  const button = make("button", { type: "button", class: "scale", "aria-pressed": "false" }, "log scale");
+  if (scales.log) stateSwitch(controls, "log scale", (isLog) => draw(isLog ? "log" : "linear"));
+  draw("linear");
+}
+
+// A button that turns something on and off.
+function stateSwitch(controls, words, act) {
+  const button = make("button", { type: "button", class: "scale", "aria-pressed": "false" }, words);
   button.addEventListener("click", () => {
-    const isLog = button.getAttribute("aria-pressed") !== "true";
-    button.setAttribute("aria-pressed", String(isLog));
-    draw(isLog ? "log" : "linear");
+    const isOn = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", String(isOn));
+    act(isOn);
   });
   controls.prepend(button);
-  draw("linear");
 }
 
 // Draws at the width that there is, and again when it changes, so that letters keep their size on a narrow screen.

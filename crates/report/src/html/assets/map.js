@@ -23,7 +23,7 @@ function drawMap(figure, data) {
   if (data.remark) controls.append(make("span", { class: "hint" }, data.remark));
   const geometry = geometryOf(data);
   const map = { data, geometry, line: firstLine(data, geometry), cell: -1 };
-  let scale = "linear";
+  let [scale, inColour] = ["linear", false];
   const cut = () => {
     if (!map.line) return;
     const size = fitted(NARROW, section.clientWidth || NARROW.width);
@@ -32,12 +32,13 @@ function drawMap(figure, data) {
   const again = drawToFit(row, (width) => {
     // What stands beside the map takes its room before the map is measured.
     section.hidden = !map.line;
-    const svg = mapDrawing(map, scale, Math.min(width, body.clientWidth));
+    const svg = mapDrawing(map, scale, inColour, Math.min(width, body.clientWidth));
     body.replaceChildren(svg);
     followMap(svg, map, readout, cut);
     cut();
   });
   scaleSwitch(controls, data.axes.bars, (wanted) => { scale = wanted; again(); });
+  if (data.colours) stateSwitch(controls, "true colour", (isOn) => { inColour = isOn; again(); });
   if (data.values.length > 1) touchSwitch(controls, body, "draw a section");
 }
 
@@ -89,7 +90,7 @@ function mapColour(share, palette) {
   return colours[low].map((part, i) => Math.round(part + (at - low) * (colours[low + 1][i] - part)));
 }
 
-function mapDrawing(map, scale, room) {
+function mapDrawing(map, scale, inColour, room) {
   const { data, geometry } = map;
   const ratio = Math.min(Math.max(geometry.ratio, 1 / LONGEST), LONGEST);
   const isSlim = room < SLIM;
@@ -100,10 +101,13 @@ function mapDrawing(map, scale, room) {
   const svg = drawing(isSlim ? room : beside + width, top + height + below, data.title);
   const [x, y, colours] = [data.axes.x, data.axes.y, data.axes.bars[scale]].map(axisOf);
   const area = { left, top, width, height };
-  const picture = mapPicture(map, [x, y], colours);
+  const colourOf = inColour ? (cell) => data.colours[cell] : (cell) => mapColour(colours.share(data.values[cell]), colours.palette);
+  const picture = mapPicture(map, [x, y], colourOf);
   svg.append(make("image", { x: area.left, y: area.top, width, height, preserveAspectRatio: "none", href: picture }));
   Object.assign(map, { x, y, area, place: drawAxes(svg, area, x, y, "plain") });
-  if (isSlim) drawColourBarBelow(svg, { left, top: top + height + 68, width: room - left - SLIM_MAP.right }, colours);
+  const aside = isSlim ? { x: left, y: top + height + 68 } : { x: left + width + 24, y: top + 12 };
+  if (inColour) svg.append(make("text", { ...aside, class: "soft" }, "sRGB, D65"));
+  else if (isSlim) drawColourBarBelow(svg, { left, top: top + height + 68, width: room - left - SLIM_MAP.right }, colours);
   else drawColourBar(svg, area, colours);
   if (ratio !== geometry.ratio && data.geometry !== "directions") {
     const y = area.top + height + (isSlim ? below - 4 : 56);
@@ -112,7 +116,7 @@ function mapDrawing(map, scale, room) {
   return svg;
 }
 
-function mapPicture({ data, geometry }, [x, y], colours) {
+function mapPicture({ data, geometry }, [x, y], colourOf) {
   const [width, height] = geometry.pixels;
   const canvas = make("canvas", { width, height });
   const context = canvas.getContext("2d");
@@ -122,7 +126,7 @@ function mapPicture({ data, geometry }, [x, y], colours) {
       const cell = geometry.cell(x.value((column + 0.5) / width), y.value(1 - (row + 0.5) / height));
       const value = cell < 0 ? null : data.values[cell];
       if (value === null || value === undefined) continue;
-      image.data.set([...mapColour(colours.share(value), colours.palette), 255], 4 * (row * width + column));
+      image.data.set([...colourOf(cell), 255], 4 * (row * width + column));
     }
   }
   context.putImageData(image, 0, 0);
@@ -183,7 +187,9 @@ function cellWords({ data }, cell) {
   const place = `${data.x_name} ${middle(data.x, column)} ${data.x_unit}, ${data.y_name} ${middle(data.y, row)} ${data.y_unit}`;
   const value = data.values[cell];
   if (value === null) return `${place}: outside the sensor`;
-  return `${place}: ${quantity(value, data.errors[cell], data.biases?.[cell], data.unit)}`;
+  const [u, v] = data.uv ? data.uv.map((own) => own[cell]) : [null, null];
+  const colour = u === null ? "" : `, u' ${u}, v' ${v}`;
+  return `${place}: ${quantity(value, data.errors[cell], data.biases?.[cell], data.unit)}${colour}`;
 }
 
 function followMap(svg, map, readout, cut) {

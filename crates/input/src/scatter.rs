@@ -22,7 +22,10 @@ pub fn measured_sheet(
     let ScatterFile { front, back, mut remarks } = file;
     let sheet = sheet([front, back], turn, &mut remarks);
     let sheet = conserving(sheet, &mut remarks)?;
-    remarks.extend(reciprocity_remark(&sheet));
+    let (_, error) = reciprocity(&sheet);
+    if error > RECIPROCAL {
+        remarks.push(sheet_checks(&sheet) + "; both are used as they are");
+    }
     Ok((sheet, remarks))
 }
 
@@ -113,8 +116,22 @@ fn largest_share(side: &SheetTables) -> (f64, f64) {
     shares.fold((0.0, 0.0), |most, own| if own.0 > most.0 { own } else { most })
 }
 
-/// A remark where light that takes paths backwards meets other values.
-fn reciprocity_remark(sheet: &MeasuredSheet) -> Option<String> {
+/// What checks of energy and reciprocity find of a sheet, in words.
+pub fn sheet_checks(sheet: &MeasuredSheet) -> String {
+    let sides = [&sheet.front, &sheet.back];
+    let most = sides.map(|side| largest_share(side).0).into_iter().fold(0.0, f64::max);
+    let energy = format!("at most {} of the light from a direction leaves", format_percent(most));
+    match reciprocity(sheet) {
+        (what, error) if error > 0.0 => format!(
+            "{energy}; over its patches, its {what} differs from that of the paths backwards by {} (rms)",
+            format_percent(error)
+        ),
+        _ => format!("{energy}; its values are the same for the paths backwards"),
+    }
+}
+
+/// What differs most from the paths backwards, and how much, 1.
+fn reciprocity(sheet: &MeasuredSheet) -> (&'static str, f64) {
     let MeasuredSheet { front, back, .. } = sheet;
     let pairs = [
         ("reflection by the front", &front.reflection, &front.reflection),
@@ -126,11 +143,5 @@ fn reciprocity_remark(sheet: &MeasuredSheet) -> Option<String> {
         // A reverse is reciprocal.
         (!table.is_reverse_of(backwards)).then(|| (what, table.reciprocity_error(backwards)))
     });
-    let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.filter(|(_, error)| *error > RECIPROCAL).map(|(what, error)| {
-        format!(
-            "over its patches, its {what} differs from that of the paths backwards by {} (rms); both are used as they are",
-            format_percent(error)
-        )
-    })
+    errors.fold(("", 0.0), |most, own| if own.1 > most.1 { own } else { most })
 }

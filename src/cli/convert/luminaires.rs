@@ -25,7 +25,11 @@ pub(super) fn converted(
     if let Some((to, format)) = to {
         let WrittenLuminaire { text: file, remarks } = written(&luminaire, format);
         write_whole(to, file.as_bytes(), existing)?;
-        for remark in remarks {
+        let lost = format.keywords_left_out(&luminaire);
+        let lost = (!lost.is_empty()).then(|| {
+            format!("{format} has no field for the texts of {}; they are left out", lost.join(", "))
+        });
+        for remark in remarks.into_iter().chain(lost) {
             _ = writeln!(text, "remark: {remark}");
         }
         _ = writeln!(text, "written: {} ({format})", to.display());

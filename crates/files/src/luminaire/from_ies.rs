@@ -42,6 +42,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let labels = &lines[..tilt];
     let head = labels.iter().position(|line| !line.trim().is_empty());
     let edition = head.map_or(Edition::First, |head| Edition::of(labels[head]));
+    remarks.extend(edition.remark(head.map(|head| labels[head])));
     let first = head.filter(|_| edition != Edition::First).map_or(0, |head| head + 1);
     let texts = texts(&labels[first..]);
     let mut numbers = WordReader::new(&lines, tilt + 1);
@@ -90,6 +91,12 @@ fn read_intensities(
         PhotometricType::C => {
             let angles_deg = numbers.angles(head.angles, "a vertical angle")?;
             let planes_deg = numbers.angles(head.planes, "a horizontal angle")?;
+            if let [only] = planes_deg[..]
+                && only != 0.0
+            {
+                let taken = "the light is taken as the same at all horizontal angles";
+                remarks.push(format!("its only plane is at {only} and not at 0; {taken}"));
+            }
             let (symmetry, planes_deg) =
                 symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
             let mut candela = read_values(numbers, head)?;

@@ -28,6 +28,22 @@ impl Edition {
         }
     }
 
+    /// A remark on a first line that does not name the edition, or an unknown one.
+    pub(crate) fn remark(self, line: Option<&str>) -> Option<String> {
+        let line = line.unwrap_or_default().trim();
+        let is_named = |names: &[&str]| names.iter().any(|name| line.contains(name));
+        match self {
+            Self::First if !is_named(&["LM-63-1986"]) => Some(
+                "no line names the edition of LM-63; it is read as LM-63-1986, of which the number after the ballast factor is a factor"
+                    .to_owned(),
+            ),
+            Self::Third if !is_named(&["LM-63-1995", "LM-63-2002"]) => {
+                Some(format!("the edition in `{line}` is not known; it is read as LM-63-2002"))
+            }
+            Self::First | Self::Second | Self::Third | Self::Latest => None,
+        }
+    }
+
     /// What the number after the ballast factor means.
     pub(crate) fn second_number(self) -> SecondNumber {
         match self {

@@ -39,6 +39,7 @@ pub use text::is_keyword;
 use crate::bytes::read_file;
 use crate::luminaire::text::decoded;
 use crate::luminaire::to_ies::WrittenEdition;
+use crate::luminaire::to_ldt::FIELDS_OF_LDT;
 use std::path::Path;
 
 impl LuminaireFormat {
@@ -52,6 +53,22 @@ impl LuminaireFormat {
         let known =
             [Self::Ies, Self::Ldt, Self::Tm33].into_iter().find(|format| format.ending() == ending);
         known.ok_or(LuminaireError::UnknownLuminaire { ending })
+    }
+
+    /// Keywords of a luminaire whose texts a file in this format leaves out, each once.
+    pub fn keywords_left_out(self, luminaire: &Luminaire) -> Vec<&str> {
+        match self {
+            // TM-33 has comments for those without a field.
+            Self::Ies | Self::Ies2019 | Self::Tm33 => Vec::new(),
+            Self::Ldt => {
+                let keywords = luminaire.texts.iter().map(|(keyword, _)| keyword.as_str());
+                let mut others: Vec<&str> =
+                    keywords.filter(|keyword| !FIELDS_OF_LDT.contains(keyword)).collect();
+                others.sort_unstable();
+                others.dedup();
+                others
+            }
+        }
     }
 }
 

@@ -229,9 +229,14 @@ fn editions_differ_in_their_factors_and_tilt_is_remarked_on() {
         "a circle of a foot, as in 1995"
     );
     assert!(opening.is_round);
-    for head in ["", "A label\n", "IESNA91\n", "\nIESNA91\n"] {
-        assert_eq!(flux(head, "TILT=NONE").0, 9.0, "{head}");
+    for (head, remarks) in [("", 1), ("A label\n", 1), ("IESNA91\n", 0), ("\nIESNA91\n", 0)] {
+        let found = flux(head, "TILT=NONE");
+        assert_eq!((found.0, found.1), (9.0, remarks), "{head}");
     }
+    let (peak, remarks, _) = flux("IES:LM-63-2099\n", "TILT=NONE");
+    assert_eq!((peak, remarks), (18.0, 1));
+    let aside = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n45\n10 10\n";
+    assert!(ies(aside).unwrap().remarks[0].contains("only plane is at 45"));
     // Since 2019 the second number is no factor, and 0.5 is none of its values.
     let (peak, remarks, _) = flux("IES:LM-63-2019\n", "TILT = INCLUDE\n1\n2\n0 90\n1 0.8");
     assert_eq!((peak, remarks), (18.0, 2));

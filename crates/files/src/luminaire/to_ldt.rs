@@ -4,6 +4,9 @@ use crate::luminaire::data::{LampFlux, Luminaire, LuminaireColour, Opening, Writ
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::{one_line, seven_digits, with_digits};
 
+/// Keywords of LM-63 for whose texts EULUMDAT has a field.
+pub(crate) const FIELDS_OF_LDT: [&str; 6] =
+    ["MANUFAC", "TEST", "LUMINAIRE", "LUMCAT", "ISSUEDATE", "LAMP"];
 /// Planes of a rotationally symmetric distribution, as most such files have.
 const PLANES: u32 = 24;
 /// Most letters of a text, and of the type of lamps, in EULUMDAT.

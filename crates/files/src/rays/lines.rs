@@ -31,7 +31,12 @@ impl RayLines {
                 return Ok(None);
             }
             if bytes.len() > LONGEST {
-                return Err(self.wrong(format!("it has more than {LONGEST} bytes")));
+                let cause = if bytes.contains(&b'\r') {
+                    "; lines must end in LF or CRLF, and these end in CR alone"
+                } else {
+                    ""
+                };
+                return Err(self.wrong(format!("it has more than {LONGEST} bytes{cause}")));
             }
             let text = String::from_utf8_lossy(&bytes);
             let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim();

@@ -208,6 +208,7 @@ fn source_files_of_opticstudio_have_units_and_a_text_form() {
     refuse("0 4\n", &["no rays"]);
     refuse("lamp", &["line 1", "begins with 1010"]);
     refuse(&format!("1 4\n{}", "1".repeat(1 << 17)), &["line 2", "more than 65536 bytes"]);
+    refuse(&"1 2 3 0 0 1 1\r".repeat(1 << 14), &["line 1", "end in CR alone"]);
 }
 
 #[test]

@@ -124,26 +124,32 @@ impl SampledScatter {
         let azimuths = self.azimuth_knots();
         let leaving = &patches.leaving;
         let columns = self.azimuth.len();
-        let of_sectors: Vec<Vec<Vec<Weight>>> = (0..leaving.rings())
-            .map(|ring| sector_weights(&azimuths, leaving.sectors(ring)))
-            .collect();
-        let rows = self.polar.len() * columns;
-        let mut all = Vec::with_capacity(of_incident.len() * leaving.count());
-        for incident in &of_incident {
-            let mut values = vec![0.0; rows];
-            for (angle, weight) in incident {
-                add(&mut values, &self.values[angle * rows..(angle + 1) * rows], *weight);
-            }
-            for (polar, sectors) in of_polar.iter().zip(&of_sectors) {
+        let mut all = vec![0.0; of_incident.len() * leaving.count()];
+        let mut first = 0;
+        // The weights of one ring at a time: those of all would be many for thousands of azimuths.
+        for (ring, polar) in of_polar.iter().enumerate() {
+            let sectors = sector_weights(&azimuths, leaving.sectors(ring));
+            // Means over its sectors for light from each angle of the table.
+            let of_angle = |angle: usize| -> Vec<f64> {
                 let mut around = vec![0.0; columns];
                 for (row, weight) in polar {
-                    add(&mut around, &values[row * columns..(row + 1) * columns], *weight);
+                    let at = (angle * self.polar.len() + row) * columns;
+                    add(&mut around, &self.values[at..at + columns], *weight);
                 }
-                let mean = |weights: &Vec<Weight>| -> f64 {
+                let mean = |weights: &Vec<Weight>| {
                     weights.iter().map(|(column, weight)| weight * around[*column]).sum()
                 };
-                all.extend(sectors.iter().map(mean));
+                sectors.iter().map(mean).collect()
+            };
+            let of_angles: Vec<Vec<f64>> = (0..self.incident.len()).map(of_angle).collect();
+            for (arriving, incident) in of_incident.iter().enumerate() {
+                let to = arriving * leaving.count() + first;
+                let values = &mut all[to..to + sectors.len()];
+                incident
+                    .iter()
+                    .for_each(|(angle, weight)| add(values, &of_angles[*angle], *weight));
             }
+            first += sectors.len();
         }
         all
     }

@@ -31,7 +31,9 @@ pub(super) fn has_angles(text: &str) -> bool {
 
 /// Lines with their numbers, without comments and empty ones.
 fn rows(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    // With LF, CRLF or CR at their ends.
+    let lines = if text.contains('\n') { text.split('\n') } else { text.split('\r') };
+    let lines = lines.enumerate().map(|(index, line)| (index + 1, line.trim()));
     lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
 }
 

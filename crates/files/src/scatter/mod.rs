@@ -13,6 +13,7 @@ mod data;
 mod error;
 mod tree;
 mod xml;
+mod xml_shape;
 
 pub use data::{BsdfMatrix, ScatterFile, ScatterSide};
 pub use error::{MAX_SCATTER_BYTES, ScatterError, ScatterFormat};

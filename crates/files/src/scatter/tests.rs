@@ -250,6 +250,9 @@ fn wrong_files_are_refused_with_their_line() {
         let count = if old == "DataDefinition" { 2 } else { 1 };
         refused(&all.replacen(old, new, count), ScatterFormat::Xml, parts);
     }
+    let cut = &all[..all.find("</ScatteringData>").unwrap()];
+    let last = format!("line {}", cut.lines().count());
+    refused(cut, ScatterFormat::Xml, &[&last, "cut short"]);
     let twice = ("Reflection Front", "LBNL/Klems Quarter", matrix(KLEMS_QUARTER, |_, _| 0.1));
     let twice = xml("Columns", "", &[twice.clone(), twice]);
     refused(&twice, ScatterFormat::Xml, &["two visible blocks"]);

@@ -8,8 +8,9 @@ use crate::scatter::basis::{basis, line_of, text};
 use crate::scatter::data::{BsdfMatrix, ScatterFile};
 use crate::scatter::error::{Violation, value};
 use crate::scatter::tree::tensor_tree;
+use crate::scatter::xml_shape;
 use lumiduct_base::math::{DirectionPatches, PatchPairs};
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
 /// How a file lays its values out.
 #[derive(Clone, Copy, PartialEq)]
@@ -23,10 +24,16 @@ enum IncidentData {
 }
 
 pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
+    xml_shape::check(text)?;
     // Without DTDs no entity can grow.
     let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options)
-        .map_err(|error| Violation::new(error.pos().row as usize, error.to_string()))?;
+    let document = Document::parse_with_options(text, options).map_err(|error| match error {
+        XmlError::UnclosedRootNode => {
+            let problem = "it ends within an element; the file may be cut short";
+            Violation::new(text.lines().count().max(1), problem)
+        }
+        error => Violation::new(error.pos().row as usize, error.to_string()),
+    })?;
     let element = |name: &str| document.descendants().find(|node| node.has_tag_name(name));
     let definition = element("DataDefinition").ok_or_else(|| {
         let root = document.root_element();

@@ -104,6 +104,9 @@ fn a_csv_needs_every_combination_but_azimuths_of_the_zenith() {
     refused(&comma, ScatterFormat::Csv, &["line 2", "6 columns instead of 4", "decimal point"]);
     let radians = format!("{head}0,0,0,0.1\n0,0.7,0,0.1\n0,1.5708,0,0.1\n");
     refused(&radians, ScatterFormat::Csv, &["line 1", "could be in radians", "180/π"]);
+    // Lines may end in CR.
+    let old = all.replace('\n', "\r");
+    assert_eq!(good(&old, ScatterFormat::Csv).front, good(&all, ScatterFormat::Csv).front);
     // Azimuths beyond 2π show that a narrow scan is in degrees.
     let narrow = format!("{head}0,0,0,0.1\n0,1.5,0,0.1\n0,0,180,0.1\n0,1.5,180,0.1\n");
     good(&narrow, ScatterFormat::Csv);

@@ -27,7 +27,7 @@ const SIGMAS: f64 = 4.0;
 pub(super) struct DiffArgs {
     /// Folder of the first report: of a run, or of a study.
     a: PathBuf,
-    /// Folder of the second report, of the same kind; or a measured file: .ies or .ldt for the intensities of a goniometer,
+    /// Folder of the second report, of the same kind; or a measured file: .ies, .ldt or .csv for the intensities of a goniometer,
     /// .csv for a map.
     b: PathBuf,
     /// A measure differs if it changes by more than this many errors of the difference (4 unless given).

@@ -38,6 +38,12 @@ fn a_map_beside_its_own_table_is_equal_in_every_form() {
             assert!(said.contains(words), "no {words} in {said}");
         }
     }
+    for file in ["a/far.intensity.csv", "a/far.intensity.matrix.csv"] {
+        let said = place.good(&format!("diff a {file} --max-difference 0.1%"));
+        for words in ["measured values are 1.0", "rms difference 0.00 %", "flux: computed"] {
+            assert!(said.contains(words), "no {words} in {said}");
+        }
+    }
     fs::write(place.path("m.csv"), moved(&place, 0.0, 0.8)).unwrap();
     let said = place.good("diff a m.csv -o d --junit d.xml");
     assert!(said.contains("measured values are 0.80"), "{said}");
@@ -123,6 +129,22 @@ fn what_does_not_fit_is_refused_with_a_hint() {
         let said = place.bad(2, arguments);
         assert!(said.contains(words), "{arguments}: {said}");
     }
-    fs::write(place.path("far.csv"), "c_from_deg,c_to_deg\n0,1\n").unwrap();
-    assert!(place.bad(2, "diff a far.csv").contains(".ies or .ldt"));
+    for (text, words) in [
+        (&b"c_from_deg,c_to_deg\n0,1\n"[..], "m.csv:1: not a map"),
+        (b"sector_deg,radius_mm,e_lx\n0,1,2\n", "m.csv:1: a map of rings"),
+        (b"x_mm,y_mm,e_lx\n0,0,-5\n", "m.csv:2: the value `-5` is below 0; set readings"),
+        (b"x_mm,y_mm,e_lx\n0,0,\xb5\n", "m.csv:2: not UTF-8 text; save the file"),
+    ] {
+        fs::write(place.path("m.csv"), text).unwrap();
+        let said = place.bad(2, "diff a m.csv");
+        assert!(said.contains(words), "{said}");
+    }
+    // The end is missing.
+    let whole = moved(&place, 0.0, 1.0);
+    let cells = whole.lines().count() - 1;
+    let short: Vec<&str> = whole.lines().take(1 + cells - 13).collect();
+    fs::write(place.path("m.csv"), short.join("\n")).unwrap();
+    let said = place.good("diff a m.csv");
+    let remark = format!("remark: 13 of {cells} cells of exit.illuminance have no measured value");
+    assert!(said.contains(&remark), "{said}");
 }

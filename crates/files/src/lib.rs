@@ -1,6 +1,9 @@
 //! Reads and writes foreign file formats: triangle [`mesh`]es, as those of [`lumiduct_base`], the luminous
 //! intensities of [`luminaire`]s, the [`rays`] of light sources, the [`scatter`] of sheets, and [`spectral`] tables. This crate knows no scenes.
 //!
+//! Readers never trust a file: whatever it contains, the result is data or an error, and what they assume is a remark. Each module has an
+//! example; the programs in `examples/` convert luminaires, draw rays of a file, and describe the scatter of a sheet.
+//!
 //! A tetrahedron in centimetres, read as a closed mesh in millimetres:
 //!
 //! ```
@@ -26,3 +29,8 @@ pub mod mesh;
 pub mod rays;
 pub mod scatter;
 pub mod spectral;
+
+/// The examples of the README, which are compiled with those of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -3,6 +3,15 @@
 //! The first line names the columns, separated by commas. The first column is the wavelength: `nm`, `wavelength_nm` or
 //! `lambda_nm` in nm, or `um` or `wavelength_um` in µm. Empty lines and lines that start with # are left out. A reader never
 //! trusts a file: whatever it contains, the result is rows or a [`SpectralError`].
+//!
+//! ```
+//! use lumiduct_files::spectral::{SpectralColumn, parse};
+//!
+//! let csv = "# PMMA\num,n,k\n0.4,1.508,2.3e-7\n0.5,1.497,2.1e-7\n";
+//! let index = parse(csv.as_bytes(), SpectralColumn::Named(&["n"]))?;
+//! assert_eq!(index.rows, [[400.0, 1.508], [500.0, 1.497]]); // nm, 1
+//! # Ok::<(), lumiduct_files::spectral::SpectralError>(())
+//! ```
 
 use crate::bytes::{NOT_UTF8, read_file, utf8};
 use std::path::Path;

@@ -3,6 +3,25 @@
 //! Readers never trust a file: whatever it contains, the result is a luminaire or a [`LuminaireError`]. What they assume about
 //! the light is a remark. Angles C and γ are the same in both formats, and tables of goniometer types A and B become tables over
 //! them; but the length of an opening lies along C0 in the first and along C90 in the second, so [`Opening`] names its axes.
+//!
+//! A lamp with 100 cd in every direction, from LM-63 to EULUMDAT:
+//!
+//! ```
+//! use lumiduct_files::luminaire::{LuminaireFormat, parse, written};
+//! use std::f64::consts::PI;
+//!
+//! let ies = "IESNA:LM-63-2002\n[MANUFAC] A maker\nTILT=NONE\n1 -1 1 3 1 1 2 -0.1 -0.1 0\n1 1 12.5\n\
+//!            0 90 180\n0\n100 100 100\n";
+//! let lamp = parse(ies.as_bytes(), LuminaireFormat::Ies)?.luminaire;
+//! assert_eq!(lamp.intensities.at(77.0, 15.0), 100.0); // cd
+//! assert!((lamp.intensities.flux() - 400.0 * PI).abs() < 1e-9); // lm
+//!
+//! let ldt = written(&lamp, LuminaireFormat::Ldt).text;
+//! let again = parse(ldt.as_bytes(), LuminaireFormat::Ldt)?.luminaire;
+//! assert!((again.intensities.flux() / (400.0 * PI) - 1.0).abs() < 1e-7);
+//! assert_eq!((again.power_w, again.text("MANUFAC")), (12.5, Some("A maker")));
+//! # Ok::<(), lumiduct_files::luminaire::LuminaireError>(())
+//! ```
 
 mod asymmetry;
 mod data;

@@ -4,6 +4,23 @@
 //! remark. Values are distribution functions, 1/sr, that are constant over pairs of patches ([`PatchPairs`]): the share of flux that
 //! leaves into a patch is the value times the projected solid angle of the patch. Whether they conserve energy is not checked here.
 //!
+//! A diffuser that transmits 0.2/sr in every direction, which is the share 0.2 π of the light:
+//!
+//! ```
+//! use lumiduct_files::scatter::{ScatterFormat, parse};
+//! use std::f64::consts::PI;
+//!
+//! let csv = "theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n0,0,0,0.2\n0,90,0,0.2\n";
+//! let sheet = parse(csv.as_bytes(), ScatterFormat::Csv)?;
+//! let matrix = sheet.front.transmission.ok_or("no transmission")?;
+//! let [_, leaving] = matrix.pairs.counts();
+//! // Light of the first patch of arriving light.
+//! let values = matrix.values[..leaving].iter().zip(0..);
+//! let share: f64 = values.map(|(value, to)| value * matrix.pairs.leaving_projected(to)).sum();
+//! assert!((share - 0.2 * PI).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [`PatchPairs`]: lumiduct_base::math::PatchPairs
 
 mod angles;

@@ -1,4 +1,4 @@
-//! Intensities of a luminaire file as means over the rings of a goniometer, by narrow sectors over three turns, so that any
+//! Measured intensities as means over the rings of a goniometer, by narrow sectors over three turns, so that any
 //! rotation about the axis C is a shift.
 
 use crate::measured::computed::ComputedCells;
@@ -15,22 +15,23 @@ const WIDEST_SECTOR: f64 = 1.25;
 /// Parts of a ring at whose middles the file is read.
 const PARTS: usize = 8;
 
-/// The measured cells from C = -360° to 720°.
+/// The measured cells of a luminaire file from C = -360° to 720°.
 pub(crate) fn measured_sphere(intensities: &Intensities, computed: &ComputedCells) -> MeasuredGrid {
-    let [c, gamma] = computed.edges();
-    let sectors = (c.len() - 1) * SECTORS;
-    let sectors = sectors * (360.0 / sectors as f64 / WIDEST_SECTOR).ceil().max(1.0) as usize;
-    let width = 360.0 / sectors as f64;
-    let edge = |place: usize| width * (place as f64 - sectors as f64);
-    let x: Vec<f64> = (0..=3 * sectors).map(edge).collect();
+    sphere_of(|c, gamma| intensities.at(c, gamma), computed)
+}
+
+/// The same of intensities by C and γ, deg; NaN where they are not measured.
+pub(crate) fn sphere_of(at: impl Fn(f64, f64) -> f64, computed: &ComputedCells) -> MeasuredGrid {
+    let x = sector_edges(computed);
+    let gamma = computed.edges()[1];
     let ring = |row: usize, plane: f64| {
-        let at =
+        let edge =
             |part: usize| gamma[row] + (gamma[row + 1] - gamma[row]) * part as f64 / PARTS as f64;
         let (mut sum, mut size) = (0.0, 0.0);
         for part in 0..PARTS {
-            let [from, to] = [at(part), at(part + 1)];
+            let [from, to] = [edge(part), edge(part + 1)];
             let own = from.to_radians().cos() - to.to_radians().cos();
-            sum += own * intensities.at(plane, 0.5 * (from + to));
+            sum += own * at(plane, 0.5 * (from + to));
             size += own;
         }
         sum / size
@@ -39,6 +40,14 @@ pub(crate) fn measured_sphere(intensities: &Intensities, computed: &ComputedCell
         ring(row, 0.5 * (x[column] + x[column + 1]))
     });
     MeasuredGrid { x, y: gamma.to_vec(), values }
+}
+
+/// Edges of sectors over three turns, deg: a few in each sector of the goniometer, or more where these are wide.
+pub(crate) fn sector_edges(computed: &ComputedCells) -> Vec<f64> {
+    let sectors = (computed.edges()[0].len() - 1) * SECTORS;
+    let sectors = sectors * (360.0 / sectors as f64 / WIDEST_SECTOR).ceil().max(1.0) as usize;
+    let width = 360.0 / sectors as f64;
+    (0..=3 * sectors).map(|place| width * (place as f64 - sectors as f64)).collect()
 }
 
 /// A remark on lamps whose flux is not that of the sources of the report, lm.

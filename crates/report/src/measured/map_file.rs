@@ -1,16 +1,24 @@
-//! Measured maps from CSV files: columns of places and values, the matrix of a report, or a plain matrix of numbers.
+//! Measured maps and intensities from CSV files: columns of places and values, the matrix of a report, or a plain matrix of
+//! numbers.
 
 use crate::diff::edges;
+use crate::measured::computed::Comparable;
+use crate::measured::directions::Directions;
+use crate::measured::points::{GridPoints, expect_size};
 use crate::measured::resample::MeasuredGrid;
+use crate::measured::sphere_cells::{LEAST_CELLS, listed_cells, whole_circle};
 use crate::measured::table::TextTable;
 use crate::png::AxisScale;
 use lumiduct_base::error::Result;
 use ndarray::Array2;
 
-/// Most cells of a measured map.
-const MOST_CELLS: usize = 1 << 24;
-/// Coordinates closer than this share of their range are the same: files have few digits.
-const SAME_PLACE: f64 = 1e-6;
+/// Least columns and rows of a map.
+const LEAST_LINES: [usize; 2] = [2, 2];
+/// Difference of edges that is rounding, mm or deg.
+const SAME_EDGE: f64 = 1e-6;
+/// Why a map of rings is refused.
+const RINGS_REFUSED: &str = "a map of rings, which is not compared with a measurement; give the sensor rows and columns (`cells`), and \
+                             the measured values at them";
 
 /// Which side of a plain matrix its first row is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,17 +40,48 @@ pub struct MatrixPlace {
     pub first_row: Option<FirstRow>,
 }
 
-/// A measured map.
+/// A measured map or distribution of intensity.
 #[derive(Debug)]
 pub(crate) struct MeasuredMap {
-    /// Its cells; those of a plain matrix lie around zero.
-    pub(crate) grid: MeasuredGrid,
-    /// Unit of its places: `mm` or `deg`.
-    pub(crate) place_unit: &'static str,
+    /// Its values and their places.
+    pub(crate) values: MeasuredValues,
     /// Unit of its values, where the file gives one.
     pub(crate) unit: Option<String>,
-    /// Whether the file gives a size alone: the middle is then that of the sensor.
-    pub(crate) is_centred: bool,
+}
+
+/// Values by the places that a file gives.
+#[derive(Debug)]
+pub(crate) enum MeasuredValues {
+    /// Cells around zero, mm: the file gives a size alone, and the middle is that of the sensor.
+    Centred(MeasuredGrid),
+    /// Cells at u and v, mm.
+    Surface(MeasuredGrid),
+    /// Cells of an image, deg.
+    Image(MeasuredGrid),
+    /// Cells of a goniometer, once around C, deg.
+    Sphere(MeasuredGrid),
+    /// Intensities in single directions.
+    Directions(Directions),
+}
+
+impl MeasuredValues {
+    /// What they can be compared with.
+    pub(crate) fn comparable(&self) -> Comparable {
+        match self {
+            Self::Centred(_) | Self::Surface(_) => Comparable::Surfaces,
+            Self::Image(_) => Comparable::Images,
+            Self::Sphere(_) | Self::Directions(_) => Comparable::Intensities,
+        }
+    }
+
+    fn has_light(&self) -> bool {
+        match self {
+            Self::Centred(grid) | Self::Surface(grid) | Self::Image(grid) | Self::Sphere(grid) => {
+                grid.values.iter().any(|value| *value > 0.0)
+            }
+            Self::Directions(own) => own.peak() > 0.0,
+        }
+    }
 }
 
 /// The map of a table.
@@ -59,96 +98,81 @@ pub(crate) fn measured_map(table: &TextTable, place: MatrixPlace) -> Result<Meas
         ));
     }
     let map = match head.get(1).and_then(|cell| cell.split_once(" from in ")) {
-        Some((_, unit)) => report_matrix(table, unit)?,
+        Some(axis) => report_matrix(table, axis)?,
         None if is_plain => plain_matrix(table, place)?,
         None => columns(table, *line, head)?,
     };
-    if map.grid.values.iter().all(|value| value.is_nan() || *value == 0.0) {
+    if !map.values.has_light() {
         return Err(table.refuse("all values are zero or missing"));
     }
     Ok(map)
 }
 
-/// Columns with a header: two places and a value.
+/// Columns with a header: places and a value.
 fn columns(table: &TextTable, line: usize, head: &[String]) -> Result<MeasuredMap> {
     let names: Vec<&str> = head.iter().map(String::as_str).collect();
-    let place_unit = match names[..] {
-        ["u_mm", "v_mm", _, ..] | ["x_mm", "y_mm", _, ..] => "mm",
-        ["u_deg", "v_deg", _, ..] => "deg",
-        ["c_from_deg", ..] => {
-            let why = "a table of intensities; compare the .ies or .ldt file of the goniometer";
-            return Err(table.refuse_line(line, why));
+    let (values, name) = match names[..] {
+        ["u_mm", "v_mm", name, ..] | ["x_mm", "y_mm", name, ..] => {
+            (MeasuredValues::Surface(middles(table)?), name)
         }
-        ["sector_deg", ..] => {
-            let why = "a map of rings, which is not compared; use a sensor with rows and columns";
-            return Err(table.refuse_line(line, why));
+        ["u_deg", "v_deg", name, ..] => (MeasuredValues::Image(middles(table)?), name),
+        ["c_deg", "gamma_deg", name, ..] => {
+            (MeasuredValues::Directions(Directions::read(table)?), name)
         }
+        ["c_from_deg", "c_to_deg", "gamma_from_deg", "gamma_to_deg", name, ..] => {
+            (MeasuredValues::Sphere(listed_cells(table)?), name)
+        }
+        ["sector_deg", ..] => return Err(table.refuse_line(line, RINGS_REFUSED)),
         _ => {
-            let why = "not a map; expected the columns `x_mm,y_mm,illuminance_lx` (or `u_deg,v_deg,...`), the matrix of a \
-                       report, or a matrix of numbers alone";
+            let why = "not a map; expected the columns `x_mm,y_mm,illuminance_lx` (or `u_deg,v_deg,...`), \
+                       `c_deg,gamma_deg,intensity_cd`, the table or matrix of a report, or a matrix of numbers alone";
             return Err(table.refuse_line(line, why));
         }
     };
-    let mut points = Vec::new();
-    for (line, cells) in &table.rows[1..] {
-        let [x, y, value, ..] = &cells[..] else {
-            return Err(table.refuse_line(*line, "fewer than three cells"));
-        };
-        let place = [table.number(*line, x)?, table.number(*line, y)?];
-        points.push((*line, place, table.value(*line, value)?));
-    }
-    let [x, y] = [0, 1].map(|axis| lines(points.iter().map(|(_, place, _)| place[axis])));
-    expect_size(table, [x.len(), y.len()])?;
-    if 2 * points.len() < x.len() * y.len() {
-        let why = format!(
-            "{} points have {} different x and {} different y, so they are no rows and columns; \
-             interpolate them to a grid before",
-            points.len(),
-            x.len(),
-            y.len()
-        );
-        return Err(table.refuse(why));
-    }
-    let mut values = Array2::from_elem((y.len(), x.len()), f64::NAN);
-    let mut is_set = Array2::from_elem(values.dim(), false);
-    for (line, place, value) in points {
-        let at = [nearest(&y, place[1]), nearest(&x, place[0])];
-        if std::mem::replace(&mut is_set[at], true) {
-            return Err(table.refuse_line(line, "a second value at the same place"));
-        }
-        values[at] = value;
-    }
-    let [x, y] = [x, y].map(|middles| edges(&middles, AxisScale::Linear));
     let unit = table.comment("unit").map(|(unit, _)| unit.to_owned());
-    let unit = unit.or_else(|| names[2].rsplit_once('_').map(|(_, unit)| unit.to_owned()));
-    Ok(MeasuredMap { grid: MeasuredGrid { x, y, values }, place_unit, unit, is_centred: false })
+    let unit = unit.or_else(|| name.rsplit_once('_').map(|(_, unit)| unit.to_owned()));
+    Ok(MeasuredMap { values, unit })
 }
 
-/// A matrix as in a report, `NAME.matrix.csv`: edges in two rows and two columns.
-fn report_matrix(table: &TextTable, unit: &str) -> Result<MeasuredMap> {
+/// Cells around points, which are their middles.
+fn middles(table: &TextTable) -> Result<MeasuredGrid> {
+    let GridPoints { x, y, values } = GridPoints::read(table, LEAST_LINES)?;
+    let [x, y] = [x, y].map(|middles| edges(&middles, AxisScale::Linear));
+    Ok(MeasuredGrid { x, y, values })
+}
+
+/// A matrix as in a report, `NAME.matrix.csv`: edges in two rows and two columns. The axis is the name and unit of its columns.
+fn report_matrix(table: &TextTable, axis: (&str, &str)) -> Result<MeasuredMap> {
     let [(first, lower), (second, upper), _, rows @ ..] = &table.rows[..] else {
         return Err(table.refuse("a matrix of a report has three header rows and values"));
     };
-    let is_flat = lower[1].starts_with("u from") || lower[1].starts_with("right from");
-    let place_unit = match unit {
-        "mm" if is_flat => "mm",
-        "deg" if is_flat => "deg",
-        _ => {
-            let why =
-                "not a matrix of rows and columns; compare intensities with an .ies or .ldt file";
-            return Err(table.refuse_line(*first, why));
-        }
+    let what = match axis {
+        ("u" | "right", "mm") => Comparable::Surfaces,
+        ("u" | "right", "deg") => Comparable::Images,
+        ("c", "deg") => Comparable::Intensities,
+        ("sector", _) => return Err(table.refuse_line(*first, RINGS_REFUSED)),
+        _ => return Err(table.refuse_line(*first, "not a matrix of a map or of intensities")),
     };
     let numbers = |line: &usize, cells: &[String]| -> Result<Vec<f64>> {
         cells.iter().map(|cell| table.number(*line, cell)).collect()
     };
     let mut x = numbers(first, lower.get(2..).unwrap_or_default())?;
-    expect_size(table, [x.len(), rows.len()])?;
+    let least = if what == Comparable::Intensities { LEAST_CELLS } else { LEAST_LINES };
+    expect_size(table, [x.len(), rows.len()], least)?;
     x.extend(numbers(second, upper.get(x.len() + 1..).unwrap_or_default())?);
-    let (mut y, mut values) = (Vec::new(), Vec::new());
-    // The top row is the first.
-    for (line, cells) in rows.iter().rev() {
+    let (mut y, mut values) = (Vec::<f64>::new(), Vec::new());
+    // The top row of a map is the first; γ grows downwards.
+    let mut rows: Vec<&(usize, Vec<String>)> = rows.iter().collect();
+    if what != Comparable::Intensities {
+        rows.reverse();
+    }
+    for (line, cells) in &rows {
         let ends = numbers(line, cells.get(..2).unwrap_or_default())?;
+        let gap = y.last().zip(ends.first()).map_or(0.0, |(last, next)| next - last);
+        if gap.abs() > SAME_EDGE {
+            let why = "the row does not begin where its neighbour ends; give all rows, with empty cells where nothing was measured";
+            return Err(table.refuse_line(*line, why));
+        }
         y.extend(if y.is_empty() { &ends[..] } else { ends.get(1..).unwrap_or_default() });
         for cell in cells.get(2..).unwrap_or_default() {
             values.push(table.value(*line, cell)?);
@@ -166,13 +190,19 @@ fn report_matrix(table: &TextTable, unit: &str) -> Result<MeasuredMap> {
         return Err(table.refuse("the edges and values of the matrix do not fit together"));
     };
     let unit = lower[0].split_once(" in ").map(|(_, unit)| unit.to_owned());
-    Ok(MeasuredMap { grid: MeasuredGrid { x, y, values }, place_unit, unit, is_centred: false })
+    let grid = MeasuredGrid { x, y, values };
+    let values = match what {
+        Comparable::Surfaces => MeasuredValues::Surface(grid),
+        Comparable::Images => MeasuredValues::Image(grid),
+        Comparable::Intensities => MeasuredValues::Sphere(whole_circle(table, grid)?),
+    };
+    Ok(MeasuredMap { values, unit })
 }
 
 /// Numbers alone; size and direction come from comments or options.
 fn plain_matrix(table: &TextTable, place: MatrixPlace) -> Result<MeasuredMap> {
     let (rows, columns) = (table.rows.len(), table.rows[0].1.len());
-    expect_size(table, [columns, rows])?;
+    expect_size(table, [columns, rows], LEAST_LINES)?;
     let size = |key: &str, option: Option<f64>| -> Result<f64> {
         let flag = format!("--{}", key.replace('_', "-"));
         let own = match table.comment(key) {
@@ -220,30 +250,5 @@ fn plain_matrix(table: &TextTable, place: MatrixPlace) -> Result<MeasuredMap> {
         (0..=count).map(|edge| size * (edge as f64 / count as f64 - 0.5)).collect()
     });
     let unit = table.comment("unit").map(|(unit, _)| unit.to_owned());
-    let grid = MeasuredGrid { x, y, values };
-    Ok(MeasuredMap { grid, place_unit: "mm", unit, is_centred: true })
-}
-
-fn expect_size(table: &TextTable, [columns, rows]: [usize; 2]) -> Result<()> {
-    if columns < 2 || rows < 2 || columns.saturating_mul(rows) > MOST_CELLS {
-        return Err(table.refuse(format!(
-            "{columns} by {rows} values; expected at least 2 by 2, and at most {MOST_CELLS} in all"
-        )));
-    }
-    Ok(())
-}
-
-/// The different coordinates, in ascending order.
-fn lines(all: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut lines: Vec<f64> = all.collect();
-    lines.sort_by(f64::total_cmp);
-    let range = lines.last().zip(lines.first()).map_or(0.0, |(last, first)| last - first);
-    lines.dedup_by(|next, kept| *next - *kept <= SAME_PLACE * range);
-    lines
-}
-
-fn nearest(lines: &[f64], at: f64) -> usize {
-    let above = lines.partition_point(|line| *line < at).min(lines.len() - 1);
-    let is_below = above > 0 && at - lines[above - 1] < lines[above] - at;
-    if is_below { above - 1 } else { above }
+    Ok(MeasuredMap { values: MeasuredValues::Centred(MeasuredGrid { x, y, values }), unit })
 }

@@ -6,12 +6,15 @@
 
 mod align;
 mod computed;
+mod directions;
 mod figures;
 mod intensities;
 mod map_file;
 mod page;
 mod pictures;
+mod points;
 mod resample;
+mod sphere_cells;
 mod table;
 
 pub use align::{FoundScale, FoundShift};
@@ -24,9 +27,10 @@ use crate::diff::{ComparedReport, Content, MapTable, read};
 use crate::measured::align::{LEAST_COVER, MapPair};
 use crate::measured::computed::{Comparable, ComputedCells, chosen};
 use crate::measured::figures::{difference_figures, side_figures};
-use crate::measured::intensities::{lamp_remark, measured_sphere};
-use crate::measured::map_file::measured_map;
+use crate::measured::intensities::{lamp_remark, measured_sphere, sphere_of};
+use crate::measured::map_file::{MeasuredMap, MeasuredValues, measured_map};
 use crate::measured::resample::{MeasuredGrid, coarsened};
+use crate::measured::sphere_cells::sphere_of_cells;
 use crate::measured::table::TextTable;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_percent;
@@ -133,11 +137,11 @@ fn read_map(
     remarks: &mut Vec<String>,
 ) -> Result<(ComputedCells, MeasuredGrid)> {
     let text = TextTable::read(file)?;
-    let map = measured_map(&text, options.place)?;
-    let what = if map.place_unit == "mm" { Comparable::Surfaces } else { Comparable::Images };
-    let computed = ComputedCells::of(chosen(tables, what, options.sensor.as_deref())?);
+    let MeasuredMap { values, unit } = measured_map(&text, options.place)?;
+    let table = chosen(tables, values.comparable(), options.sensor.as_deref())?;
+    let computed = ComputedCells::of(table);
     let plain = |unit: &str| unit.trim().to_lowercase().replace('²', "2").replace(' ', "");
-    match &map.unit {
+    match &unit {
         Some(unit) if plain(unit) != plain(&computed.unit) => {
             return Err(text.refuse(format!(
                 "the values are in `{unit}`, but {} is in {}; convert them, or name another sensor with --sensor",
@@ -151,14 +155,24 @@ fn read_map(
                 .push(format!("the measured file gives no unit; its values are taken as {unit}"));
         }
     }
-    let mut grid = map.grid;
-    if map.is_centred {
-        let middle = computed.edges().map(|edges| 0.5 * (edges[0] + edges[edges.len() - 1]));
-        grid.x.iter_mut().for_each(|edge| *edge += middle[0]);
-        grid.y.iter_mut().for_each(|edge| *edge += middle[1]);
-        remarks.push("the middle of the matrix is taken as the middle of the sensor".to_owned());
-    }
-    let grid = coarsened(&grid, computed.edges());
+    let grid = match values {
+        MeasuredValues::Surface(grid) | MeasuredValues::Image(grid) => {
+            coarsened(&grid, computed.edges())
+        }
+        MeasuredValues::Centred(mut grid) => {
+            let middle = computed.edges().map(|edges| 0.5 * (edges[0] + edges[edges.len() - 1]));
+            grid.x.iter_mut().for_each(|edge| *edge += middle[0]);
+            grid.y.iter_mut().for_each(|edge| *edge += middle[1]);
+            remarks
+                .push("the middle of the matrix is taken as the middle of the sensor".to_owned());
+            coarsened(&grid, computed.edges())
+        }
+        MeasuredValues::Sphere(cells) => sphere_of_cells(&cells, &computed),
+        MeasuredValues::Directions(own) => {
+            remarks.extend(own.remark());
+            sphere_of(|c, gamma| own.at(c, gamma), &computed)
+        }
+    };
     Ok((computed, grid))
 }
 
@@ -205,12 +219,13 @@ fn compared(
     let cover = pair.cover(&as_read);
     if cover.is_nan() || cover < LEAST_COVER {
         return Err(Error::Usage(format!(
-            "{file} covers {} of {}, at least {} are needed; check its size and places",
+            "{file} covers {} of {}, at least {} are needed; check its size and places, and whether values are missing",
             format_percent(if cover.is_nan() { 0.0 } else { cover }),
             computed.name,
             format_percent(LEAST_COVER)
         )));
     }
+    remarks.extend(left_out_remark(&computed, &as_read));
     let wanted = !options.no_align;
     let shift = pair.align([wanted, wanted && !computed.is_intensity()], &mut remarks);
     let aligned = pair.measured(shift.value);
@@ -235,6 +250,23 @@ fn compared(
         limit: options.limit,
         measured: [as_read, aligned / factor],
         computed,
+    })
+}
+
+/// A remark on computed cells without a measured value: cells missing in the file, or beyond it.
+fn left_out_remark(computed: &ComputedCells, as_read: &Array2<f64>) -> Option<String> {
+    let pairs = computed.cells.values.iter().zip(as_read);
+    let measured: Vec<f64> = pairs.filter(|(own, _)| own.is_finite()).map(|(_, m)| *m).collect();
+    let missing = measured.iter().filter(|value| value.is_nan()).count();
+    (missing > 0).then(|| {
+        let verbs = if missing == 1 { ["has", "is"] } else { ["have", "are"] };
+        format!(
+            "{missing} of {} cells of {} {} no measured value for a part or all of the cell, and {} left out",
+            measured.len(),
+            computed.name,
+            verbs[0],
+            verbs[1]
+        )
     })
 }
 

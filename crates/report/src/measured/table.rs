@@ -36,8 +36,12 @@ impl TextTable {
             )));
         }
         let bytes = std::fs::read(path).map_err(failed)?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Error::Usage(format!("{file}: not UTF-8 text; save it as CSV UTF-8")))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let end = line_end(error.as_bytes());
+            let line = 1 + good.iter().filter(|byte| **byte == end).count();
+            Error::Usage(format!("{file}:{line}: not UTF-8 text; save the file as CSV UTF-8"))
+        })?;
         Self::parse(file, &text)
     }
 
@@ -47,7 +51,7 @@ impl TextTable {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let (mut comments, mut rows) = (Vec::new(), Vec::new());
         let mut separator = None;
-        for (place, line) in text.lines().enumerate() {
+        for (place, line) in text.split(char::from(line_end(text.as_bytes()))).enumerate() {
             if let Some(comment) = line.trim_start().strip_prefix('#') {
                 if let Some((key, value)) = comment.split_once('=') {
                     let [key, value] = [key, value].map(|part| part.trim().to_lowercase());
@@ -99,9 +103,26 @@ impl TextTable {
         number.ok_or_else(|| self.refuse_line(line, format!("`{cell}` is not a finite number")))
     }
 
-    /// A value in a line; NaN for an empty cell, where nothing was measured.
+    /// A value of light in a line, not below 0; NaN for an empty cell or `nan`, where nothing was measured.
     pub(crate) fn value(&self, line: usize, cell: &str) -> Result<f64> {
-        let is_missing = cell.is_empty() || cell.eq_ignore_ascii_case("nan");
-        if is_missing { Ok(f64::NAN) } else { self.number(line, cell) }
+        if cell.is_empty() || cell.eq_ignore_ascii_case("nan") {
+            return Ok(f64::NAN);
+        }
+        let value = self.number(line, cell)?;
+        if value < 0.0 {
+            return Err(self.refuse_line(
+                line,
+                format!(
+                    "the value `{cell}` is below 0; set readings below the dark level to 0, or leave the cell empty where \
+                     nothing was measured"
+                ),
+            ));
+        }
+        Ok(value)
     }
+}
+
+/// The end of lines: LF, also after CR, or CR alone.
+fn line_end(bytes: &[u8]) -> u8 {
+    if bytes.contains(&b'\n') { b'\n' } else { b'\r' }
 }

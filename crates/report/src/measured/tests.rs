@@ -1,6 +1,8 @@
-use super::*;
+mod intensity_files;
+mod map_files;
+
 use crate::cell_grid::SURFACE;
-use crate::measured::map_file::MeasuredMap;
+use crate::measured::*;
 use crate::png::{AxisScale, MapCells};
 use lumiduct_files::luminaire::{Intensities, PlaneSymmetry};
 use std::fmt::Write;
@@ -154,95 +156,6 @@ fn a_shift_that_nothing_determines_is_left_alone_and_small_maps_are_not_aligned(
         Vec::new(),
     );
     assert!(said.unwrap_err().to_string().contains("check its size"), "too little is covered");
-}
-
-fn read_text(text: &str) -> Result<MeasuredMap> {
-    measured_map(&TextTable::parse("m.csv".to_owned(), text)?, MatrixPlace::default())
-}
-
-#[test]
-fn every_form_of_a_map_gives_the_same_cells() {
-    let matrix = "# width_mm = 2\n# height_mm = 4\n# unit = lx\n3 4\n1 2,5\n";
-    let forms = [
-        matrix.to_owned(),
-        matrix.replace("3 4\n1 2,5", "# rows = bottom\n1;2,5\n3;4"),
-        "x_mm,y_mm,e_lx\n-0.5,-1,1\n0.5,-1,2.5\n-0.5,1,3\n0.5,1,4\n".to_owned(),
-        "u_mm,v_mm,e_lx,std_error_lx\n0.5,1,4,9\n-0.5,1,3,9\n0.5,-1,2.5,9\n-0.5,-1,1,9\n".to_owned(),
-        "\u{feff}e in lx,u from in mm,-1,0\n,u to in mm,0,1\nv from in mm,v to in mm,,\n0,2,3,4\n-2,0,1,2.5\n"
-            .to_owned(),
-    ];
-    for text in forms {
-        let map = read_text(&text).unwrap();
-        assert_eq!(
-            (&map.grid.x[..], &map.grid.y[..]),
-            (&[-1.0, 0.0, 1.0][..], &[-2.0, 0.0, 2.0][..])
-        );
-        assert_eq!(map.grid.values, ndarray::array![[1.0, 2.5], [3.0, 4.0]], "{text}");
-        assert_eq!((map.unit.as_deref(), map.place_unit), (Some("lx"), "mm"));
-    }
-}
-
-#[test]
-fn what_is_no_map_is_refused_with_its_line() {
-    for (text, words) in [
-        ("", "no values"),
-        ("1 2\n3 4\n", "without its size"),
-        ("# width_mm = 1\n1 2\n3 4\n", "--height-mm"),
-        ("# width_mm = -1\n# height_mm = 1\n1 2\n3 4\n", "m.csv:1: width_mm is not above 0"),
-        ("# width_mm = 1\n# height_mm = 1\n1 2\n3\n", "m.csv:4: 1 cells"),
-        ("# width_mm = 1\n# height_mm = 1\n1 2\n3 x\n", "m.csv:4: `x` is not"),
-        ("# width_mm = 1\n# height_mm = 1\n# rows = up\n1 2\n3 4\n", "m.csv:3: rows must"),
-        ("# width_mm = 1\n# height_mm = 1\n0 0\n0 0\n", "zero or missing"),
-        ("# width_mm = 1\n# height_mm = 1\n1 2\n", "2 by 1 values"),
-        ("a,b,c\n1,2,3\n", "m.csv:1: not a map"),
-        ("sector_deg,radius_mm,e\n0,0,1\n", "rings"),
-        ("c_from_deg,c_to_deg,gamma_from_deg\n0,0,1\n", ".ies or .ldt"),
-        ("x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n2,2,3\n", "no rows and columns"),
-        ("x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n0,1,3\n1,1,3\n", "m.csv:5: a second value"),
-        ("x_mm,y_mm,e_lx\n0,0\n", "m.csv:2: fewer than three"),
-        (
-            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n0,2,3\n-2,0,1,2\n",
-            "do not fit together",
-        ),
-        ("e in lx,u from in mm\n,u to in mm\n,,\n0,2\n-2,0\n", "0 by 2 values"),
-    ] {
-        let said = read_text(text).err().unwrap().to_string();
-        assert!(said.contains(words), "{text:?}: {said}");
-    }
-}
-
-#[test]
-fn units_and_places_that_do_not_fit_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    let table = |name: &str| {
-        let mut text = "u_mm,v_mm,illuminance_lx,std_error_lx\n".to_owned();
-        for (x, y) in (0..36).map(|n| (f64::from(n % 6), f64::from(n / 6))) {
-            _ = writeln!(text, "{x},{y},{},1", field(x, y));
-        }
-        MapTable::parse(name, &text).unwrap().unwrap()
-    };
-    let tables = [table("exit.illuminance"), table("exit.illuminance.from_red")];
-    let said = |text: &str, options: &MeasuredOptions| -> String {
-        let path = dir.path().join("m.csv");
-        std::fs::write(&path, text).unwrap();
-        let read = read_map(&path, &tables, options, &mut Vec::new());
-        read.map_or_else(|error| error.to_string(), |(computed, _)| computed.name)
-    };
-    let measured = "x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n0,1,3\n1,0,3\n";
-    let none = MeasuredOptions::default();
-    let sensor =
-        |name: &str| MeasuredOptions { sensor: Some(name.to_owned()), ..Default::default() };
-    assert_eq!(said(measured, &none), "exit.illuminance");
-    let red = sensor("exit.illuminance.from_red");
-    assert_eq!(said(measured, &red), "exit.illuminance.from_red");
-    assert!(said(measured, &sensor("exi")).contains("--sensor exi"));
-    assert!(said(&measured.replace("e_lx", "l_cd/m2"), &none).contains("are in `cd/m2`"));
-    assert!(
-        said(&measured.replace("x_mm,y_mm", "u_deg,v_deg"), &none)
-            .contains("no map with places in degrees")
-    );
-    let place = MatrixPlace { width_mm: Some(1.0), ..Default::default() };
-    assert!(said(measured, &MeasuredOptions { place, ..none }).contains("own places"));
 }
 
 /// A beam that leans to C = 30°, from a table.

@@ -1,0 +1,96 @@
+//! Rows of a measured table with two places and a value each, as rows and columns of a grid.
+
+use crate::measured::table::TextTable;
+use lumiduct_base::error::Result;
+use ndarray::Array2;
+
+/// Most cells of a measured map.
+const MOST_CELLS: usize = 1 << 24;
+/// Coordinates closer than this share of their range are the same: files have few digits.
+const SAME_PLACE: f64 = 1e-6;
+
+/// Values at single places.
+#[derive(Debug)]
+pub(crate) struct GridPoints {
+    /// Places of the columns, in ascending order.
+    pub(crate) x: Vec<f64>,
+    /// Places of the rows, in ascending order.
+    pub(crate) y: Vec<f64>,
+    /// Values, `[[row, column]]`; NaN where nothing was measured.
+    pub(crate) values: Array2<f64>,
+}
+
+impl GridPoints {
+    /// The first three columns of a table with a header, of at least so many columns and rows of a grid.
+    ///
+    /// # Errors
+    ///
+    /// `Error::Usage` with file and line if the cells are no numbers, or the points no grid.
+    pub(crate) fn read(table: &TextTable, least: [usize; 2]) -> Result<Self> {
+        let mut points = Vec::new();
+        for (line, cells) in &table.rows[1..] {
+            let [x, y, value, ..] = &cells[..] else {
+                return Err(table.refuse_line(*line, "fewer than three cells"));
+            };
+            let place = [table.number(*line, x)?, table.number(*line, y)?];
+            points.push((*line, place, table.value(*line, value)?));
+        }
+        let [x, y] = [0, 1].map(|axis| lines(points.iter().map(|(_, place, _)| place[axis])));
+        expect_size(table, [x.len(), y.len()], least)?;
+        if 2 * points.len() < x.len() * y.len() {
+            let why = format!(
+                "{} points have {} different places in the first column and {} in the second, so they are no rows and columns; \
+                 interpolate them to a grid before",
+                points.len(),
+                x.len(),
+                y.len()
+            );
+            return Err(table.refuse(why));
+        }
+        let mut values = Array2::from_elem((y.len(), x.len()), f64::NAN);
+        let mut is_set = Array2::from_elem(values.dim(), false);
+        for (line, place, value) in points {
+            let at = [nearest(&y, place[1]), nearest(&x, place[0])];
+            if std::mem::replace(&mut is_set[at], true) {
+                return Err(table.refuse_line(line, "a second value at the same place"));
+            }
+            values[at] = value;
+        }
+        Ok(Self { x, y, values })
+    }
+}
+
+/// Refuses too few columns and rows, and too many cells.
+///
+/// # Errors
+///
+/// `Error::Usage` with the file.
+pub(crate) fn expect_size(
+    table: &TextTable,
+    [columns, rows]: [usize; 2],
+    least: [usize; 2],
+) -> Result<()> {
+    if columns < least[0] || rows < least[1] || columns.saturating_mul(rows) > MOST_CELLS {
+        return Err(table.refuse(format!(
+            "{columns} by {rows} values; expected at least {} by {}, and at most {MOST_CELLS} in all",
+            least[0], least[1]
+        )));
+    }
+    Ok(())
+}
+
+/// The different coordinates, in ascending order.
+pub(crate) fn lines(all: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut lines: Vec<f64> = all.collect();
+    lines.sort_by(f64::total_cmp);
+    let range = lines.last().zip(lines.first()).map_or(0.0, |(last, first)| last - first);
+    lines.dedup_by(|next, kept| *next - *kept <= SAME_PLACE * range);
+    lines
+}
+
+/// The nearest of some lines in ascending order.
+pub(crate) fn nearest(lines: &[f64], at: f64) -> usize {
+    let above = lines.partition_point(|line| *line < at).min(lines.len() - 1);
+    let is_below = above > 0 && at - lines[above - 1] < lines[above] - at;
+    if is_below { above - 1 } else { above }
+}

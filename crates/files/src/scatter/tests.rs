@@ -285,11 +285,11 @@ fn damaged_files_are_read_or_refused() {
     let small = xml("Columns", &basis, &[("Reflection Front", "own", matrix(3, |_, _| 0.1))]);
     let tree = format!("{{ {} }}", "{ 0.1 }\n".repeat(8));
     let tree = xml("TensorTree3", "", &[("Transmission", "", tree)]);
-    // A CSV is averaged over many patches, which takes long without optimisation.
+    // A CSV is averaged over many patches, which takes longer.
     for (text, format, count) in [
         (small, ScatterFormat::Xml, 20_000),
         (tree, ScatterFormat::Xml, 20_000),
-        (csv_of(|_, s, _| s * 1e-3), ScatterFormat::Csv, 100),
+        (csv_of(|_, s, _| s * 1e-3), ScatterFormat::Csv, 100_000),
     ] {
         let mut usable = 0;
         for bytes in mutants(text.as_bytes(), count, 18) {

@@ -278,7 +278,7 @@ mod tests {
                     *held += i32::from((own.value - truth).abs() <= 2.0 * error);
                 }
             }
-            // The line holds least, in 175; a share of 0.87 of 200 is known to 5.
+            // Fewer than the 190 of a normal distribution; a share of 0.87 of 200 is known to 5.
             assert!(held.iter().all(|own| *own >= 165), "{name}: {held:?} of {trials}");
             let is_hidden = hidden > trials / 2;
             assert_eq!(is_hidden, may_hide, "{name}: {hidden} of {trials}");

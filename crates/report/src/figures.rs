@@ -24,25 +24,19 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let mut files = Vec::new();
     for map in measures.maps.iter().filter(|map| !is_one_cell(map)) {
         files.push(OutputFile { name: format!("{}.png", map_name(map)), bytes: map_picture(map)? });
-        let in_colour = match &map.axes {
+        match &map.axes {
             MapAxes::Cartesian { .. } | MapAxes::Angular { .. } => {
-                true_colour_map(&in_true_colour(sensor_map(map)))
+                files.extend(in_true_colour(&map_name(map), sensor_map(map))?);
             }
-            MapAxes::Polar { .. } => None,
-        };
-        if let Some(bytes) = in_colour {
-            files.push(OutputFile { name: format!("{}.colour.png", map_name(map)), bytes: bytes? });
+            MapAxes::Polar { .. } => {}
         }
     }
     for table in &measures.intensities {
         let name = intensity_name(table);
         let bytes = polar_plot(&intensity_plot(table))?;
         files.push(OutputFile { name: format!("{name}.png"), bytes });
-        let in_colour = has_sectors(table)
-            .then(|| true_colour_map(&in_true_colour(directions_map(table))))
-            .flatten();
-        if let Some(bytes) = in_colour {
-            files.push(OutputFile { name: format!("{name}.colour.png"), bytes: bytes? });
+        if has_sectors(table) {
+            files.extend(in_true_colour(&name, directions_map(table))?);
         }
     }
     for spectrum in &measures.spectra {
@@ -64,9 +58,13 @@ pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
 }
 
 /// A map under the title of its picture in true colour.
-fn in_true_colour(map: HeatMap) -> HeatMap {
+/// The picture of a map in its own colours; `None` without colours.
+fn in_true_colour(name: &str, map: HeatMap) -> Result<Option<OutputFile>> {
+    let Some(colours) = map.cells.colours.clone() else { return Ok(None) };
     let subtitle = "as a screen shows its light (sRGB, white of D65)".to_owned();
-    HeatMap { title: format!("{}, true colour", map.title), subtitle, ..map }
+    let map = HeatMap { title: format!("{}, true colour", map.title), subtitle, ..map };
+    let bytes = true_colour_map(&map, &colours)?;
+    Ok(Some(OutputFile { name: format!("{name}.colour.png"), bytes }))
 }
 
 /// Whether a goniometer resolves azimuths.

@@ -25,6 +25,17 @@ impl Chromaticity {
         [4.0 * self.x / denominator, 9.0 * self.y / denominator]
     }
 
+    /// The chromaticity with these coordinates u', v', 1; the inverse of [`Self::uv_1976`].
+    pub fn from_uv_1976([u, v]: [f64; 2]) -> Self {
+        let denominator = 6.0 * u - 16.0 * v + 12.0;
+        Self { x: 9.0 * u / denominator, y: 4.0 * v / denominator }
+    }
+
+    /// Tristimulus values X, Y, Z of light of this chromaticity, in the unit of Y.
+    pub fn tristimulus(self, luminous: f64) -> [f64; 3] {
+        [self.x / self.y, 1.0, (1.0 - self.x - self.y) / self.y].map(|own| luminous * own)
+    }
+
     /// The coordinates u, v of the CIE 1960 uniform chromaticity scale diagram, 1: u = u', v = 2/3 v'. Colour temperature
     /// and colour rendering still use it.
     pub fn uv_1960(self) -> [f64; 2] {
@@ -55,6 +66,16 @@ mod tests {
             let [own_u, own_v] = Chromaticity { x, y }.uv_1960();
             assert!((own_u - u).abs() < 1e-8 && (own_v - v).abs() < 1e-8, "{own_u} {own_v}");
         }
+    }
+
+    #[test]
+    fn stimuli_have_their_chromaticity_in_either_diagram() {
+        let own = Chromaticity { x: 0.44758, y: 0.40745 };
+        let found = Chromaticity::from_uv_1976(own.uv_1976());
+        assert!((found.x - own.x).abs() < 1e-15 && (found.y - own.y).abs() < 1e-15, "{found:?}");
+        // Illuminant A: X 109.85, Z 35.58 for Y 100.
+        let [x, y, z] = own.tristimulus(100.0);
+        assert!((x - 109.85).abs() < 0.01 && y == 100.0 && (z - 35.58).abs() < 0.01, "{x} {z}");
     }
 
     #[test]

@@ -1,4 +1,7 @@
-//! A model of white LEDs: a blue die and the light of its phosphor.
+//! A model of white LEDs: a blue die and the light of its phosphor, a Gaussian each. Such models come within a few per cent of the colour
+//! temperatures and a few points of the Ra of real LEDs (Jin et al., IEEE Photonics J. 5 (2013) 1600110).
+//!
+//! Widths and the ranges of peaks are assumptions: they are of the order of those of indium gallium nitride dies and of cerium and europium phosphors.
 
 use crate::colour::chromaticity::Chromaticity;
 use crate::colour::standard::gaussian;
@@ -32,12 +35,11 @@ impl PhosphorWhite {
             return None;
         }
         let target = planckian(kelvin);
-        let [width, height] = [target.x, target.y];
         let die = sums(DIE);
-        // By which side of the line from the die through the target the phosphor lies on.
+        // Positive where the phosphor lies on the red side of the line from the die through the target.
         let side = |peak: f64| {
             let [phosphor, die] = [sums([peak, PHOSPHOR_WIDTH]), die].map(chromaticity);
-            (phosphor.x - die.x) * (height - die.y) - (phosphor.y - die.y) * (width - die.x)
+            (phosphor.x - die.x) * (target.y - die.y) - (phosphor.y - die.y) * (target.x - die.x)
         };
         let [mut low, mut high] = PHOSPHORS;
         for _ in 0..48 {
@@ -46,7 +48,7 @@ impl PhosphorWhite {
         }
         let peak = 0.5 * (low + high);
         let phosphor = sums([peak, PHOSPHOR_WIDTH]);
-        let excess = |of: [f64; 3]| of[0] - width * of.iter().sum::<f64>();
+        let excess = |of: [f64; 3]| of[0] - target.x * of.iter().sum::<f64>();
         Some(Self { peak, blue: -excess(phosphor) / excess(die) })
     }
 
@@ -86,11 +88,11 @@ mod tests {
     #[test]
     fn it_renders_colours_as_leds_with_one_phosphor_do() {
         // A single phosphor lacks red: Ra is near 70, and R9 below 0.
-        for kelvin in [2700.0, 4000.0, 6500.0] {
+        for kelvin in [2000.0, 2700.0, 4000.0, 6500.0, 20_000.0] {
             let led = PhosphorWhite::new(kelvin).unwrap();
             let found = colour_rendering(&sampled(|nm| led.at(nm))).unwrap();
             assert!((68.0..75.0).contains(&found.general), "{found:?}");
-            assert!((-45.0..-15.0).contains(&found.special[8]), "{found:?}");
+            assert!((-45.0..0.0).contains(&found.special[8]), "{found:?}");
         }
     }
 }

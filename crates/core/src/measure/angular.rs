@@ -8,7 +8,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::measure::cell_colours::ColouredCells;
+use crate::measure::cell_colours::CellColours;
 use crate::measure::evidence::{Evidence, status_by_error};
 use crate::measure::light::LightSelection;
 use crate::measure::noisy::{Noisy, WeightedValue};
@@ -195,7 +195,7 @@ pub(crate) fn table(
         values: cells(|cell| cell.value),
         std_errors: cells(|cell| cell.std_error),
         biases: None,
-        colours: colours(evidence, id, goniometer, light).map(|own| own.table(sectors)),
+        colours: None,
         gamma_deg: edges(180.0, rings),
         c_deg: edges(360.0, sectors),
         ring_gamma_deg: ring_gammas(rings).into_iter().map(f64::to_degrees).collect(),
@@ -206,17 +206,21 @@ pub(crate) fn table(
     }
 }
 
-/// The colours of all light on the sphere; `None` without spectra.
-fn colours(
+/// Gives the table of all light the colours of its cells; how even these are, by the last part of the names of these measures.
+pub(crate) fn add_colours(
     evidence: &Evidence<'_>,
     id: SensorId,
     goniometer: &Goniometer,
-    light: LightSelection,
-) -> Option<ColouredCells> {
-    match light {
-        LightSelection::All => ColouredCells::of(evidence, id, 0..goniometer.cells()),
-        LightSelection::Group(_) => None,
-    }
+    table: &mut IntensityTable,
+) -> IndexMap<String, Measure> {
+    let Some(colours) = CellColours::of(evidence, id, 0..goniometer.cells()) else {
+        return IndexMap::new();
+    };
+    table.colours = Some(colours.table(goniometer.c_cells));
+    let sphere = SphereFlux::of(evidence, id, goniometer, LightSelection::All);
+    let level = |cell| sphere.intensity(cell / goniometer.c_cells, &[cell % goniometer.c_cells]);
+    let levels: Vec<_> = (0..goniometer.cells()).map(|cell| Some(level(cell))).collect();
+    colours.spread(evidence, &levels).into()
 }
 
 /// The measures of some light on the sphere, by the last part of their dotted names; zones and
@@ -242,15 +246,6 @@ pub(crate) fn measures(
     out.insert(format!("intensity_axis{from}"), axis);
     let angles = angles(evidence, &sphere, &curve).into_iter();
     out.extend(angles.map(|(name, angle)| (format!("{name}{from}"), angle)));
-    if let Some(colours) = colours(evidence, id, goniometer, light) {
-        let rings = 0..goniometer.gamma_cells;
-        let levels = rings.flat_map(|ring| {
-            let sectors = 0..goniometer.c_cells;
-            let intensity = |sector| Some(sphere.intensity(ring, &[sector]).value);
-            sectors.map(intensity).collect::<Vec<_>>()
-        });
-        out.extend(colours.spread(evidence, levels));
-    }
     match light {
         LightSelection::All => zones(evidence, &sphere, &curve, &mut out),
         LightSelection::Group(_) => {}

@@ -4,16 +4,16 @@
 #[cfg(test)]
 mod tests;
 
-use crate::measure::ColourTable;
-use crate::measure::cell_colours::ColouredCells;
+use crate::measure::cell_colours::CellColours;
 use crate::measure::cells::SensorCells;
 use crate::measure::evidence::Evidence;
 use crate::measure::light::LightSelection;
 use crate::measure::noisy::{Noisy, WeightedValue};
-use crate::measure::points;
 use crate::measure::uniformity::{Uniformity, UniformitySummary, ValueField, uniformity};
+use crate::measure::{ColourTable, Measure, points};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use glam::DVec2;
+use indexmap::IndexMap;
 use ndarray::Array2;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -161,7 +161,7 @@ fn map(
         values: read(|cell| cell.value),
         std_errors: read(|cell| cell.std_error),
         biases: None,
-        colours: colours(evidence, id, sensor, light, view).map(|own| own.table(columns)),
+        colours: None,
         on_sensor: table(&|cell| seen.cover(cell)),
         axes: axes(sensor),
         area_mm2: sensor.area(),
@@ -169,20 +169,29 @@ fn map(
     }
 }
 
-/// The colours of the cells of a map of all light; `None` without spectra.
-pub(crate) fn colours(
+/// Gives the maps of all light the colours of their cells; how even these are, by the last part of the names of these measures.
+pub(crate) fn add_colours(
     evidence: &Evidence<'_>,
     id: SensorId,
     sensor: &SurfaceSensor,
-    light: LightSelection,
-    view: Option<usize>,
-) -> Option<ColouredCells> {
+    maps: &mut [SensorMap],
+) -> IndexMap<String, Measure> {
+    let mut out = IndexMap::new();
     let (columns, rows) = map_grid(sensor).shape();
-    let first = view.unwrap_or(0) * columns * rows;
-    match light {
-        LightSelection::All => ColouredCells::of(evidence, id, first..first + columns * rows),
-        LightSelection::Group(_) => None,
+    for map in maps.iter_mut().filter(|own| own.light.is_none()) {
+        let first = map.view.unwrap_or(0) * columns * rows;
+        let colours = CellColours::of(evidence, id, first..first + columns * rows);
+        if let Some(colours) = colours.as_ref().filter(|_| columns * rows > 1) {
+            let seen = SensorCells::of(evidence, id, sensor, LightSelection::All, map.view);
+            let level = |cell| seen.is_full(cell).then(|| seen.at(cell));
+            let levels: Vec<_> = (0..columns * rows).map(level).collect();
+            let view = map.view.map_or(String::new(), |view| format!(".{view}"));
+            let spread = colours.spread(evidence, &levels).into_iter();
+            out.extend(spread.map(|(name, measure)| (format!("{name}{view}"), measure)));
+        }
+        map.colours = colours.map(|own| own.table(columns));
     }
+    out
 }
 
 fn summary(

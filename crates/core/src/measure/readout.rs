@@ -4,7 +4,7 @@
 use crate::measure::cells::SensorCells;
 use crate::measure::evidence::{Evidence, status_by_error};
 use crate::measure::light::LightSelection;
-use crate::measure::map::{SensorMap, colours, map_grid};
+use crate::measure::map::{SensorMap, map_grid};
 use crate::measure::noisy::Noisy;
 use crate::measure::uniformity::Statistic;
 use crate::measure::{Measure, Status, points};
@@ -39,13 +39,6 @@ pub(crate) fn measures(
                 cell_measure(evidence, map, seen.mean(middle))
             };
             add(&format!("{}_center", map.quantity), center);
-        }
-        let colours = colours(evidence, id, sensor, light, map.view);
-        if let Some(colours) = colours.filter(|_| map.values.len() > 1) {
-            let levels = map.values.iter().enumerate();
-            let levels = levels.map(|(cell, level)| seen.is_full(cell).then_some(*level));
-            let spread = colours.spread(evidence, levels);
-            spread.into_iter().for_each(|(name, measure)| add(&name, measure));
         }
         match light {
             LightSelection::All => cell_measures(evidence, sensor, map, &seen, &mut add),

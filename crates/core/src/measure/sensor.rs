@@ -1,5 +1,6 @@
 //! All measures of one sensor, from any estimator.
 
+use crate::measure::cell_colours::NONUNIFORMITY;
 use crate::measure::evidence::Evidence;
 use crate::measure::light::LightSelection;
 use crate::measure::{
@@ -137,6 +138,14 @@ fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
             }
         }
     }
+    values.extend(match &scene.sensors[id.index()].kind {
+        SensorKind::Surface(surface) => map::add_colours(evidence, id, surface, &mut maps),
+        SensorKind::Goniometer(goniometer) => {
+            // The first is that of all light.
+            let all = intensities.first_mut();
+            all.map(|own| angular::add_colours(evidence, id, goniometer, own)).unwrap_or_default()
+        }
+    });
     let paths = paths::paths(evidence, id);
     let spectrum = colour::spectrum(evidence, id);
     SensorMeasures { values, maps, intensities, spectrum, paths }
@@ -149,6 +158,9 @@ fn total(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
 }
 
 fn one_value(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
+    if name.starts_with(NONUNIFORMITY) {
+        return by_evidence(evidence, id).values.swap_remove(name);
+    }
     total(evidence, id, name).or_else(|| {
         let light = LightSelection::of_measure(evidence.scene, name);
         let mut read = match &evidence.scene.sensors[id.index()].kind {

@@ -32,7 +32,7 @@ pub use gather::{GatherSettings, Orders};
 pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tally::Stage;
-pub(crate) use tally::cell_colours::CellStimuli;
+pub(crate) use tally::cell_stimuli::NoisyStimuli;
 pub(crate) use tally::colour::{BIN_WIDTH, FIRST_BIN, SPECTRUM_BINS, Stimulus};
 pub(crate) use tally::readings::MIN_LIT_GROUPS;
 pub use tally::readings::{GROUPS, Group, Leak, Readings};

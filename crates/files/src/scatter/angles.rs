@@ -154,7 +154,7 @@ impl SampledScatter {
         all
     }
 
-    /// Azimuths once around, deg, with the places of their values, from a turn before to a turn after.
+    /// Azimuths, deg, each with the place of its values: those of 0 to 360 deg, and the same a turn before and a turn after.
     fn azimuth_knots(&self) -> Vec<Knot> {
         let count = self.azimuth.len();
         let own: Vec<Knot> = self.azimuth.iter().copied().zip(0..count).collect();

@@ -17,7 +17,7 @@ pub enum SpectrumSpec {
     BlackbodyK(#[schemars(range(min = 500.0, max = 100_000.0))] f64),
     /// A phase of daylight of this correlated colour temperature, by the CIE's method.
     DaylightK(#[schemars(range(min = 4000.0, max = 25_000.0))] f64),
-    /// A white LED of this colour temperature: a blue peak at 450 nm, 20 nm wide, and that of its phosphor, 120 nm wide, whose place and share give the colour of a black body; Ra is about 70.
+    /// A white LED of this colour temperature on the Planckian locus: a Gaussian of its blue die at 450 nm, 20 nm wide at half maximum, and one of its phosphor, 120 nm wide, with the peak (540 to 625 nm) and height that give this colour. Ra is 68 to 75.
     PhosphorWhiteK(#[schemars(range(min = 2000.0, max = 20_000.0))] f64),
     /// A Gaussian peak, as of a coloured LED.
     Peak(PeakSpec),

@@ -86,7 +86,7 @@ impl MapTable {
             (values[at], errors[at]) = (*value, *error);
         }
         let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
-        MapCells { x, y, values, errors, biases: None, stimuli: None }
+        MapCells { x, y, values, errors, biases: None, colours: None }
     }
 
     /// Whether cells, quantity and unit equal those of another map.

@@ -1,6 +1,6 @@
 //! The cells of a map on a page. Large maps are coarsened; the tables have all cells.
 
-use crate::png::MapCells;
+use crate::png::{MapCells, MapColours};
 use glam::DVec3;
 use ndarray::Array2;
 
@@ -28,10 +28,12 @@ pub(crate) fn coarse(cells: &MapCells, side: usize) -> MapCells {
             of(row, column).map(|at| table[at]).sum::<f64>() / of(row, column).count() as f64
         })
     };
-    let mean_stimuli = |table: &Array2<DVec3>| {
-        Array2::from_shape_fn(shape, |(row, column)| {
-            of(row, column).map(|at| table[at]).sum::<DVec3>() / of(row, column).count() as f64
-        })
+    let mean_colours = |colours: &MapColours| MapColours {
+        stimuli: Array2::from_shape_fn(shape, |(row, column)| {
+            let sum: DVec3 = of(row, column).map(|at| colours.stimuli[at]).sum();
+            sum / of(row, column).count() as f64
+        }),
+        uv_errors: None,
     };
     let errors = Array2::from_shape_fn(shape, |(row, column)| {
         let variance: f64 = of(row, column).map(|at| cells.errors[at].powi(2)).sum();
@@ -44,7 +46,7 @@ pub(crate) fn coarse(cells: &MapCells, side: usize) -> MapCells {
         errors,
         // A bias does not average out.
         biases: cells.biases.as_ref().map(mean),
-        stimuli: cells.stimuli.as_ref().map(mean_stimuli),
+        colours: cells.colours.as_ref().map(mean_colours),
     }
 }
 
@@ -69,7 +71,7 @@ mod tests {
                 .unwrap(),
             errors: Array2::from_elem((2, 3), 3.0),
             biases: None,
-            stimuli: None,
+            colours: None,
         };
         let coarse = coarse(&cells, 2);
         assert_eq!((coarse.x, coarse.y), (vec![0.0, 2.0, 3.0], vec![0.0, 2.0]));

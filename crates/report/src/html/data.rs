@@ -7,11 +7,13 @@ use crate::html::axes::{chart_axes, dial_axes, ink, map_axes};
 use crate::html::cells::{coarse, joined};
 use crate::local_axes::LocalAxes;
 use crate::png::{
-    self, AxisScale, ErrorForm, HeatMap, LinePlot, MapCells, MapFrame, MapPlaces, PolarPlot,
-    SeriesForm, on_screen, series_ink, uv,
+    self, AxisScale, ErrorForm, HeatMap, LinePlot, MapCells, MapColours, MapFrame, MapPlaces,
+    PolarPlot, SeriesForm, on_screen, series_ink,
 };
 use glam::DVec3;
+use lumiduct_core::colour::Chromaticity;
 use lumiduct_core::measure::{Balance, Measure};
+use ndarray::Array2;
 use serde_json::{Value, json};
 
 /// Significant digits of numbers.
@@ -19,7 +21,7 @@ const DIGITS: i32 = 6;
 /// Significant digits of standard errors and biases.
 const ERROR_DIGITS: i32 = 3;
 /// Significant digits of chromaticities.
-const COLOUR_DIGITS: i32 = 4;
+const COLOUR_DIGITS: i32 = 6;
 /// Digits of coordinates below the size of a scene.
 const PLACE_DIGITS: i32 = 4;
 
@@ -66,10 +68,17 @@ fn cell_data(cells: &MapCells) -> Value {
         "plot": "map", "x": numbers(&cells.x, DIGITS), "y": numbers(&cells.y, DIGITS),
         "values": values, "errors": errors, "biases": biases,
     });
-    if let Some(stimuli) = &cells.stimuli {
+    if let Some(MapColours { stimuli, uv_errors }) = &cells.colours {
         data["colours"] = on_screen(stimuli).iter().map(|rgb| json!(rgb)).collect();
-        let of = |place: usize| numbers(&stimuli.map(|own| uv(*own)[place]), COLOUR_DIGITS);
+        let uv = |own: &DVec3| {
+            let colour = Chromaticity::from_tristimulus(own.to_array());
+            colour.map_or([f64::NAN; 2], Chromaticity::uv_1976)
+        };
+        let of = |place: usize| numbers(&stimuli.map(|own| uv(own)[place]), COLOUR_DIGITS);
         data["uv"] = json!([of(0), of(1)]);
+        let errors =
+            |own: &[Array2<f64>; 2]| json!(own.each_ref().map(|own| numbers(own, ERROR_DIGITS)));
+        data["uv_errors"] = uv_errors.as_ref().map_or(Value::Null, errors);
     }
     data
 }

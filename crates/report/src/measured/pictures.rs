@@ -82,7 +82,7 @@ fn named(
         quantity: if is_difference { "difference".to_owned() } else { quantity.to_owned() },
         unit: diff.unit.clone(),
         places: diff.computed.kind.places,
-        cells: MapCells { x, y, values, errors: errors.clone(), biases: None, stimuli: None },
+        cells: MapCells { x, y, values, errors: errors.clone(), biases: None, colours: None },
         colours: if is_difference { ColourMap::Diverging } else { ColourMap::Sequential },
         limits: Some(limits),
     };

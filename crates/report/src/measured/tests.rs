@@ -34,7 +34,7 @@ fn computed(half: [f64; 2], value: impl Fn(f64, f64) -> f64, error: f64) -> Comp
     let MeasuredGrid { x, y, values } = grid(half, value);
     let errors = Array2::from_elem(values.dim(), error);
     let sizes = Array2::ones(values.dim());
-    let cells = MapCells { x, y, values, errors, biases: None, stimuli: None };
+    let cells = MapCells { x, y, values, errors, biases: None, colours: None };
     let (name, unit) = ("exit.illuminance".to_owned(), "lx".to_owned());
     ComputedCells { name, kind: &SURFACE, unit, cells, sizes }
 }

@@ -78,8 +78,17 @@ pub(crate) struct MapCells {
     pub errors: Array2<f64>,
     /// Bias indicators, where a bias is possible.
     pub biases: Option<Array2<f64>>,
-    /// Tristimulus values X, Y, Z, where light has a colour; Y is the value.
-    pub stimuli: Option<Array2<DVec3>>,
+    /// Colours, where light has some.
+    pub colours: Option<MapColours>,
+}
+
+/// The colours of the cells of a map.
+#[derive(Debug, Clone)]
+pub(crate) struct MapColours {
+    /// Tristimulus values X, Y, Z; Y is the value of the cell.
+    pub stimuli: Array2<DVec3>,
+    /// Standard errors of u' and v'; `None` for joined cells.
+    pub uv_errors: Option<[Array2<f64>; 2]>,
 }
 
 /// Largest size of the map itself, pixels.
@@ -102,10 +111,9 @@ pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     picture(map, &colours, Some(&bar))
 }
 
-/// Draws a map as a screen can show its light, without a bar; `None` without colours.
-pub(crate) fn true_colour_map(map: &HeatMap) -> Option<Result<Vec<u8>>> {
-    let colours = on_screen(map.cells.stimuli.as_ref()?);
-    Some(picture(map, &colours, None))
+/// Draws a map as a screen can show these colours, without a bar.
+pub(crate) fn true_colour_map(map: &HeatMap, colours: &MapColours) -> Result<Vec<u8>> {
+    picture(map, &on_screen(&colours.stimuli), None)
 }
 
 fn picture(map: &HeatMap, colours: &Array2<Rgb>, bar: Option<&ColourBar>) -> Result<Vec<u8>> {
@@ -292,7 +300,7 @@ mod tests {
                     errors: values.clone(),
                     values,
                     biases: None,
-                    stimuli: None,
+                    colours: None,
                 },
                 colours: ColourMap::Sequential,
                 limits: None,

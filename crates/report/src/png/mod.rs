@@ -27,7 +27,7 @@ pub(crate) use cross_section::{
     CrossSection, NamedPlace, PlaceOf, RayEnd, RayPath, SurfaceDots, cross_section,
 };
 pub(crate) use heat_map::{
-    HeatMap, MapCells, MapFrame, MapGeometry, MapPlaces, heat_map, true_colour_map,
+    HeatMap, MapCells, MapColours, MapFrame, MapGeometry, MapPlaces, heat_map, true_colour_map,
 };
 pub(crate) use line_plot::{
     ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot, stacked_plots,
@@ -39,7 +39,7 @@ pub(crate) use palette::{SeriesInk, curve_colours, series_ink};
 pub(crate) use polar_plot::dial_axis;
 pub(crate) use polar_plot::{PolarCurve, PolarPlot, polar_plot};
 pub(crate) use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
-pub(crate) use true_colour::{on_screen, uv};
+pub(crate) use true_colour::on_screen;
 
 #[cfg(test)]
 mod tests {

@@ -11,12 +11,6 @@ const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
 /// Share of the lit cells that are no brighter than the screen can show, 1; without it one hot cell would darken all others.
 const SHOWN_IN_FULL: f64 = 0.995;
 
-/// CIE 1976 u' and v' of tristimulus values; NaN without light.
-pub(crate) fn uv(of: DVec3) -> [f64; 2] {
-    let sum = of.dot(DVec3::new(1.0, 15.0, 3.0));
-    [4.0 * of.x / sum, 9.0 * of.y / sum]
-}
-
 /// Cells as they look side by side, the brightest as bright as a screen shows their colours.
 pub(crate) fn on_screen(stimuli: &Array2<DVec3>) -> Array2<Rgb> {
     let shown = stimuli.mapv(within_gamut);
@@ -54,11 +48,12 @@ fn encoded(linear: DVec3) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lumiduct_core::colour::Chromaticity;
     use ndarray::array;
 
     /// Tristimulus values of a chromaticity u', v' with this Y.
     fn light(u: f64, v: f64, y: f64) -> DVec3 {
-        y / (4.0 * v) * DVec3::new(9.0 * u, 4.0 * v, 12.0 - 3.0 * u - 20.0 * v)
+        DVec3::from_array(Chromaticity::from_uv_1976([u, v]).tristimulus(y))
     }
 
     #[test]
@@ -77,8 +72,6 @@ mod tests {
     fn pure_colours_keep_their_luminance() {
         // 520 nm is beyond any screen.
         let green = light(0.023_1, 0.583_7, 3.0);
-        let [u, v] = uv(green);
-        assert!((u - 0.023_1).abs() < 1e-12 && (v - 0.583_7).abs() < 1e-12);
         let shown = within_gamut(green);
         assert!(shown.min_element().abs() < 1e-9 && shown.y > shown.x, "{shown}");
         let luminance = shown.dot(DVec3::new(0.2126, 0.7152, 0.0722));

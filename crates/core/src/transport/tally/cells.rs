@@ -1,4 +1,4 @@
-//! Sums over the cells of a sensor, sparse while few of them are lit.
+//! Summed over the cells of a sensor, sparse while few of them are lit.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -6,24 +6,52 @@ use std::collections::BTreeMap;
 /// A map is kept dense once it is no larger than this many cells, or once a quarter of it is lit.
 const DENSE_CELLS: usize = 4096;
 
+/// What is summed in a cell. A batch itself is an accumulator whose products are filled in at its end.
+pub trait Summed: Copy + Default {
+    /// Whether the cell is lit.
+    fn is_lit(&self) -> bool;
+    /// Adds the sums of others, times a factor.
+    fn add(&mut self, others: &Self, factor: f64);
+    /// Ends a batch: sets the products of its sums, which stay.
+    fn close_batch(&mut self);
+}
+
+/// Summed in every cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum CellSums<S> {
+    /// Lit cells only, with the total number of cells.
+    Sparse(usize, BTreeMap<u32, S>),
+    /// All cells.
+    Dense(Vec<S>),
+}
+
 /// For every cell: the sum over batches of the flux that the batch counted, lm or W, and the sum of its square.
 ///
 /// Every batch carries the whole flux of the sources, so the mean over batches is the flux in the cell.
-///
-/// A batch itself is an accumulator whose squares are filled in by `Cells::close_batch`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Cells {
-    /// Lit cells only, with the total number of cells.
-    Sparse(usize, BTreeMap<u32, [f64; 2]>),
-    /// All cells.
-    Dense(Vec<[f64; 2]>),
+pub type Cells = CellSums<[f64; 2]>;
+
+impl Summed for [f64; 2] {
+    fn is_lit(&self) -> bool {
+        self[0] != 0.0
+    }
+
+    #[inline]
+    fn add(&mut self, others: &Self, factor: f64) {
+        self[0] += factor * others[0];
+        self[1] += factor * others[1];
+    }
+
+    #[inline]
+    fn close_batch(&mut self) {
+        self[1] = self[0] * self[0];
+    }
 }
 
-impl Cells {
+impl<S: Summed> CellSums<S> {
     /// Nothing counted yet.
     pub(crate) fn new(cells: usize) -> Self {
         if cells <= DENSE_CELLS {
-            Self::Dense(vec![[0.0; 2]; cells])
+            Self::Dense(vec![S::default(); cells])
         } else {
             Self::Sparse(cells, BTreeMap::new())
         }
@@ -37,92 +65,89 @@ impl Cells {
         }
     }
 
-    /// Counts flux in a cell.
-    #[inline]
-    pub fn add(&mut self, cell: usize, flux: f64) {
+    /// The sums of a cell.
+    pub(crate) fn get(&self, cell: usize) -> S {
         match self {
-            Self::Sparse(_, sums) => sums.entry(cell as u32).or_default()[0] += flux,
-            Self::Dense(sums) => sums[cell][0] += flux,
+            Self::Sparse(_, sums) => sums.get(&(cell as u32)).copied().unwrap_or_default(),
+            Self::Dense(sums) => sums[cell],
+        }
+    }
+
+    /// The sums of a cell, to add to them.
+    #[inline]
+    pub(crate) fn get_mut(&mut self, cell: usize) -> &mut S {
+        match self {
+            Self::Sparse(_, sums) => sums.entry(cell as u32).or_default(),
+            Self::Dense(sums) => &mut sums[cell],
         }
     }
 
     /// The counts of a batch that is `a` times this one and `b` times another of the same size.
     pub(crate) fn combined(&self, [a, b]: [f64; 2], other: &Self) -> Self {
-        let mut sum = self.clone();
-        match &mut sum {
-            Self::Sparse(_, sums) => sums.values_mut().for_each(|own| own[0] *= a),
-            Self::Dense(sums) => sums.iter_mut().for_each(|own| own[0] *= a),
-        }
-        match other {
-            Self::Sparse(_, sums) => {
-                sums.iter().for_each(|(&cell, other)| sum.add(cell as usize, b * other[0]));
-            }
-            Self::Dense(sums) => {
-                let lit = sums.iter().enumerate().filter(|(_, other)| other[0] != 0.0);
-                lit.for_each(|(cell, other)| sum.add(cell, b * other[0]));
-            }
-        }
+        let mut sum = Self::new(self.count());
+        sum.add_all(self, a);
+        sum.add_all(other, b);
         sum
     }
 
-    /// Ends a batch: sets the squares of its sums, which stay.
+    /// Ends a batch.
     pub(crate) fn close_batch(&mut self) {
-        let square = |sum: &mut [f64; 2]| sum[1] = sum[0] * sum[0];
-        match self {
-            Self::Sparse(_, sums) => sums.values_mut().for_each(square),
-            Self::Dense(sums) => sums.iter_mut().for_each(square),
-        }
+        self.each_mut(S::close_batch);
     }
 
     /// Adds the sums of the batches that follow.
     pub(crate) fn merge(&mut self, later: &Self) {
-        match later {
-            Self::Sparse(_, sums) => {
-                for (&cell, sum) in sums {
-                    self.add_sums(cell as usize, *sum);
-                }
-            }
-            Self::Dense(sums) => {
-                for (cell, sum) in sums.iter().enumerate().filter(|(_, sum)| sum[0] != 0.0) {
-                    self.add_sums(cell, *sum);
-                }
-            }
-        }
+        self.add_all(later, 1.0);
         self.densify();
     }
 
-    /// Mean over batches and its standard error, for a cell.
-    pub fn mean(&self, cell: usize, batches: u64) -> (f64, f64) {
-        let [sum, squares] = match self {
-            Self::Sparse(_, sums) => sums.get(&(cell as u32)).copied().unwrap_or_default(),
-            Self::Dense(sums) => sums[cell],
-        };
-        let n = batches as f64;
-        let mean = sum / n;
-        // Rounding may leave a tiny negative variance where all batches agree.
-        let variance = (squares / n - mean * mean).max(0.0) / (n - 1.0);
-        (mean, variance.sqrt())
+    fn each_mut(&mut self, act: impl FnMut(&mut S)) {
+        match self {
+            Self::Sparse(_, sums) => sums.values_mut().for_each(act),
+            Self::Dense(sums) => sums.iter_mut().for_each(act),
+        }
     }
 
-    fn add_sums(&mut self, cell: usize, sum: [f64; 2]) {
-        let own = match self {
-            Self::Sparse(_, sums) => sums.entry(cell as u32).or_default(),
-            Self::Dense(sums) => &mut sums[cell],
-        };
-        own[0] += sum[0];
-        own[1] += sum[1];
+    fn add_all(&mut self, others: &Self, factor: f64) {
+        match others {
+            Self::Sparse(_, sums) => {
+                sums.iter().for_each(|(&cell, sums)| self.get_mut(cell as usize).add(sums, factor));
+            }
+            Self::Dense(sums) => {
+                let lit = sums.iter().enumerate().filter(|(_, sums)| sums.is_lit());
+                lit.for_each(|(cell, sums)| self.get_mut(cell).add(sums, factor));
+            }
+        }
     }
 
     fn densify(&mut self) {
         if let Self::Sparse(cells, sums) = self
             && sums.len() * 4 > *cells
         {
-            let mut dense = vec![[0.0; 2]; *cells];
+            let mut dense = vec![S::default(); *cells];
             for (&cell, sum) in sums.iter() {
                 dense[cell as usize] = *sum;
             }
             *self = Self::Dense(dense);
         }
+    }
+}
+
+impl Cells {
+    /// Counts flux in a cell.
+    #[inline]
+    pub fn add(&mut self, cell: usize, flux: f64) {
+        self.get_mut(cell)[0] += flux;
+    }
+
+    /// Mean over batches and its standard error, for a cell.
+    pub fn mean(&self, cell: usize, batches: u64) -> (f64, f64) {
+        let [sum, squares] = self.get(cell);
+        let n = batches as f64;
+        let mean = sum / n;
+        // Rounding may leave a tiny negative variance where all batches agree.
+        let variance = (squares / n - mean * mean).max(0.0) / (n - 1.0);
+        (mean, variance.sqrt())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Counts: cells, colour, scalars by their layout, losses, and sums over batches.
 
-pub(crate) mod cell_colours;
+pub(crate) mod cell_stimuli;
 mod cells;
 pub(crate) mod colour;
 mod counts;

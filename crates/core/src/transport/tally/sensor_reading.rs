@@ -1,7 +1,7 @@
 //! The counts of one sensor, and the light that it counts.
 
 use crate::scene::{LightGroupId, Scene, SensorId, SourceId};
-use crate::transport::tally::cell_colours::CellColours;
+use crate::transport::tally::cell_stimuli::CellStimuli;
 use crate::transport::tally::cells::Cells;
 use crate::transport::tally::colour::{Stimuli, Stimulus};
 use crate::transport::{Layout, TAILS};
@@ -43,8 +43,8 @@ pub struct SensorReading {
     pub cells: Cells,
     /// The part of it from each light group.
     pub groups: Vec<Cells>,
-    /// The colour of all of it; `None` without spectra.
-    pub colours: Option<CellColours>,
+    /// Tristimulus values of all of it; `None` without spectra.
+    pub stimuli: Option<CellStimuli>,
     /// Flux per depth of path, lm or W.
     pub depths: Cells,
     /// Flux by path class.
@@ -82,7 +82,7 @@ impl SensorReading {
         Self {
             cells: Cells::new(cells),
             groups: scene.light.ids().map(|_| Cells::new(cells)).collect(),
-            colours: scene.is_spectral().then(|| CellColours::new(cells)),
+            stimuli: scene.is_spectral().then(|| CellStimuli::new(cells)),
             depths: Cells::new(DEPTH_BINS),
             classes: BTreeMap::new(),
         }
@@ -92,29 +92,29 @@ impl SensorReading {
     pub(crate) fn close_batch(&mut self) {
         self.cells.close_batch();
         self.groups.iter_mut().for_each(Cells::close_batch);
-        self.colours.iter_mut().for_each(CellColours::close_batch);
+        self.stimuli.iter_mut().for_each(CellStimuli::close_batch);
         self.depths.close_batch();
     }
 
     /// Makes it `a` times its counts and `b` times those of another.
     pub(crate) fn combine(&mut self, shares: [f64; 2], other: &Self) {
         self.each(other, |own, other| *own = own.combined(shares, other));
+        let stimuli = self.stimuli.iter_mut().zip(&other.stimuli);
+        stimuli.for_each(|(own, other)| *own = own.combined(shares, other));
     }
 
     /// Adds the counts of the batches that follow.
     pub(crate) fn merge(&mut self, later: &Self) {
         self.each(later, Cells::merge);
+        self.stimuli.iter_mut().zip(&later.stimuli).for_each(|(own, later)| own.merge(later));
         merge_classes(&mut self.classes, &later.classes);
     }
 
-    /// All cells, each with those of another reading.
+    /// All fluxes of cells, each with those of another reading.
     fn each(&mut self, other: &Self, mut act: impl FnMut(&mut Cells, &Cells)) {
         act(&mut self.cells, &other.cells);
         self.groups.iter_mut().zip(&other.groups).for_each(|(own, other)| act(own, other));
         act(&mut self.depths, &other.depths);
-        if let (Some(own), Some(other)) = (&mut self.colours, &other.colours) {
-            own.each(other, act);
-        }
     }
 
     /// Counts light in a cell, as all light, as that of the light groups of its source, and by its colour.
@@ -126,8 +126,8 @@ impl SensorReading {
         groups: &[LightGroupId],
     ) {
         self.cells.add(cell, light.flux);
-        if let Some(colours) = &mut self.colours {
-            colours.add(cell, light.flux, light.wavelength);
+        if let Some(stimuli) = &mut self.stimuli {
+            stimuli.add(cell, light.flux, light.wavelength);
         }
         for group in groups {
             self.groups[group.index()].add(cell, light.flux);

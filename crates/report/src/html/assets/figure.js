@@ -29,8 +29,8 @@ function scaleSwitch(controls, scales, draw) {
 }
 
 // A button that turns something on and off.
-function stateSwitch(controls, words, act) {
-  const button = make("button", { type: "button", class: "scale", "aria-pressed": "false" }, words);
+function stateSwitch(controls, words, act, kind = "scale") {
+  const button = make("button", { type: "button", class: kind, "aria-pressed": "false" }, words);
   button.addEventListener("click", () => {
     const isOn = button.getAttribute("aria-pressed") !== "true";
     button.setAttribute("aria-pressed", String(isOn));
@@ -56,13 +56,7 @@ function drawToFit(body, draw) {
 
 // A button that makes a finger draw or turn, where it scrolls the page otherwise. A mouse needs none.
 function touchSwitch(controls, target, words) {
-  const button = make("button", { type: "button", class: "touch", "aria-pressed": "false" }, words);
-  button.addEventListener("click", () => {
-    const isOn = button.getAttribute("aria-pressed") !== "true";
-    button.setAttribute("aria-pressed", String(isOn));
-    target.classList.toggle("grabbed", isOn);
-  });
-  controls.prepend(button);
+  stateSwitch(controls, words, (isOn) => target.classList.toggle("grabbed", isOn), "touch");
 }
 
 // Whether a press of the pointer may draw or turn: that of a mouse always, that of a finger where it was asked to.

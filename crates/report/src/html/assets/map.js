@@ -23,7 +23,7 @@ function drawMap(figure, data) {
   if (data.remark) controls.append(make("span", { class: "hint" }, data.remark));
   const geometry = geometryOf(data);
   const map = { data, geometry, line: firstLine(data, geometry), cell: -1 };
-  let [scale, inColour] = ["linear", false];
+  let [scale, shown] = ["linear", "values"];
   const cut = () => {
     if (!map.line) return;
     const size = fitted(NARROW, section.clientWidth || NARROW.width);
@@ -32,13 +32,13 @@ function drawMap(figure, data) {
   const again = drawToFit(row, (width) => {
     // What stands beside the map takes its room before the map is measured.
     section.hidden = !map.line;
-    const svg = mapDrawing(map, scale, inColour, Math.min(width, body.clientWidth));
+    const svg = mapDrawing(map, scale, shown, Math.min(width, body.clientWidth));
     body.replaceChildren(svg);
     followMap(svg, map, readout, cut);
     cut();
   });
   scaleSwitch(controls, data.axes.bars, (wanted) => { scale = wanted; again(); });
-  if (data.colours) stateSwitch(controls, "true colour", (isOn) => { inColour = isOn; again(); });
+  if (data.colours) stateSwitch(controls, "true colour", (isOn) => { shown = isOn ? "colours" : "values"; again(); });
   if (data.values.length > 1) touchSwitch(controls, body, "draw a section");
 }
 
@@ -90,7 +90,7 @@ function mapColour(share, palette) {
   return colours[low].map((part, i) => Math.round(part + (at - low) * (colours[low + 1][i] - part)));
 }
 
-function mapDrawing(map, scale, inColour, room) {
+function mapDrawing(map, scale, shown, room) {
   const { data, geometry } = map;
   const ratio = Math.min(Math.max(geometry.ratio, 1 / LONGEST), LONGEST);
   const isSlim = room < SLIM;
@@ -101,12 +101,12 @@ function mapDrawing(map, scale, inColour, room) {
   const svg = drawing(isSlim ? room : beside + width, top + height + below, data.title);
   const [x, y, colours] = [data.axes.x, data.axes.y, data.axes.bars[scale]].map(axisOf);
   const area = { left, top, width, height };
-  const colourOf = inColour ? (cell) => data.colours[cell] : (cell) => mapColour(colours.share(data.values[cell]), colours.palette);
+  const colourOf = shown === "colours" ? (cell) => data.colours[cell] : (cell) => mapColour(colours.share(data.values[cell]), colours.palette);
   const picture = mapPicture(map, [x, y], colourOf);
   svg.append(make("image", { x: area.left, y: area.top, width, height, preserveAspectRatio: "none", href: picture }));
   Object.assign(map, { x, y, area, place: drawAxes(svg, area, x, y, "plain") });
   const aside = isSlim ? { x: left, y: top + height + 68 } : { x: left + width + 24, y: top + 12 };
-  if (inColour) svg.append(make("text", { ...aside, class: "soft" }, "sRGB, D65"));
+  if (shown === "colours") svg.append(make("text", { ...aside, class: "soft" }, "sRGB, D65"));
   else if (isSlim) drawColourBarBelow(svg, { left, top: top + height + 68, width: room - left - SLIM_MAP.right }, colours);
   else drawColourBar(svg, area, colours);
   if (ratio !== geometry.ratio && data.geometry !== "directions") {
@@ -188,7 +188,8 @@ function cellWords({ data }, cell) {
   const value = data.values[cell];
   if (value === null) return `${place}: outside the sensor`;
   const [u, v] = data.uv ? data.uv.map((own) => own[cell]) : [null, null];
-  const colour = u === null ? "" : `, u' ${u}, v' ${v}`;
+  const withError = (of, place) => (data.uv_errors ? formatWithError(of, data.uv_errors[place][cell]) : formatValue(of));
+  const colour = u === null ? "" : `, u' ${withError(u, 0)}, v' ${withError(v, 1)}`;
   return `${place}: ${quantity(value, data.errors[cell], data.biases?.[cell], data.unit)}${colour}`;
 }
 

@@ -3,7 +3,8 @@
 use crate::cli::values::{parse_length, parse_percent};
 use clap::{Args, ValueEnum};
 use lumiduct_base::error::{Error, Result};
-use lumiduct_report::measured::{FirstRow, MatrixPlace, MeasuredOptions};
+use lumiduct_files::measured::FirstRow;
+use lumiduct_report::measured::{MatrixPlace, MeasuredOptions};
 
 /// Arguments for a measured file alone.
 #[derive(Debug, Args)]

@@ -1,5 +1,6 @@
 //! Reads and writes foreign file formats: triangle [`mesh`]es, as those of [`lumiduct_base`], the luminous
-//! intensities of [`luminaire`]s, the [`rays`] of light sources, the [`scatter`] of sheets, and [`spectral`] tables. This crate knows no scenes.
+//! intensities of [`luminaire`]s, the [`rays`] of light sources, the [`scatter`] of sheets, [`measured`] maps, and [`spectral`] tables. This crate
+//! knows no scenes.
 //!
 //! Readers never trust a file: whatever it contains, the result is data or an error, and what they assume is a remark. Each module has an
 //! example; the programs in `examples/` convert luminaires, draw rays of a file, and describe the scatter of a sheet.
@@ -25,6 +26,7 @@
 
 mod bytes;
 pub mod luminaire;
+pub mod measured;
 pub mod mesh;
 pub mod rays;
 pub mod scatter;

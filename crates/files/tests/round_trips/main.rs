@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 mod luminaires;
+mod measured;
 mod rays;
 mod scatter;
 mod spectra;

@@ -13,7 +13,7 @@ mod read;
 mod record;
 
 pub use maps::{MapDiff, MapOutcome};
-pub(crate) use maps::{MapTable, edges, limit};
+pub(crate) use maps::{MapTable, limit};
 pub use measures::{DiffRow, Judgement};
 pub use measures::{Limits, MapLimit};
 pub(crate) use page::sentence;

@@ -9,9 +9,10 @@
 
 use crate::measured::computed::ComputedCells;
 use crate::measured::intensities::MOST_ROTATION;
-use crate::measured::resample::{MeasuredGrid, resampled};
+use crate::measured::resample::resampled;
 use lumiduct_base::math::solve_rows;
 use lumiduct_base::number::format_with_error;
+use lumiduct_files::measured::MeasuredGrid;
 use ndarray::Array2;
 
 /// Share of the size of a map over which a shift is searched to either side, but at least one cell.

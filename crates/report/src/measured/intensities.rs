@@ -2,8 +2,8 @@
 //! rotation about the axis C is a shift.
 
 use crate::measured::computed::ComputedCells;
-use crate::measured::resample::MeasuredGrid;
 use lumiduct_files::luminaire::{Intensities, LampFlux};
+use lumiduct_files::measured::MeasuredGrid;
 use ndarray::Array2;
 
 /// Largest rotation that is searched, deg.

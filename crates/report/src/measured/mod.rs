@@ -6,20 +6,17 @@
 
 mod align;
 mod computed;
-mod directions;
 mod figures;
 mod intensities;
 mod map_file;
 mod page;
 mod pictures;
-mod points;
 mod resample;
 mod sphere_cells;
-mod table;
 
 pub use align::{FoundScale, FoundShift};
 pub use figures::{DifferenceFigures, SideFigures};
-pub use map_file::{FirstRow, MatrixPlace};
+pub use map_file::MatrixPlace;
 pub(crate) use page::verdict;
 pub use page::{measured_files, measured_text};
 
@@ -28,13 +25,13 @@ use crate::measured::align::{LEAST_COVER, MapPair};
 use crate::measured::computed::{Comparable, ComputedCells, chosen};
 use crate::measured::figures::{difference_figures, side_figures};
 use crate::measured::intensities::{lamp_remark, measured_sphere, sphere_of};
-use crate::measured::map_file::{MeasuredMap, MeasuredValues, measured_map};
-use crate::measured::resample::{MeasuredGrid, coarsened};
+use crate::measured::map_file::{comparable, expect_place, placed, refused};
+use crate::measured::resample::coarsened;
 use crate::measured::sphere_cells::sphere_of_cells;
-use crate::measured::table::TextTable;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_percent;
 use lumiduct_files::luminaire;
+use lumiduct_files::measured::{self, MeasuredError, MeasuredGrid, MeasuredMap, MeasuredValues};
 use ndarray::{Array2, Axis, Slice};
 use std::path::Path;
 
@@ -136,17 +133,18 @@ fn read_map(
     options: &MeasuredOptions,
     remarks: &mut Vec<String>,
 ) -> Result<(ComputedCells, MeasuredGrid)> {
-    let text = TextTable::read(file)?;
-    let MeasuredMap { values, unit } = measured_map(&text, options.place)?;
-    let table = chosen(tables, values.comparable(), options.sensor.as_deref())?;
+    let refuse = |error| refused(file, error);
+    let MeasuredMap { values, unit, remarks: assumed } = measured::read(file).map_err(refuse)?;
+    expect_place(&values, options.place).map_err(refuse)?;
+    let table = chosen(tables, comparable(&values), options.sensor.as_deref())?;
     let computed = ComputedCells::of(table);
     let plain = |unit: &str| unit.trim().to_lowercase().replace('²', "2").replace(' ', "");
     match &unit {
         Some(unit) if plain(unit) != plain(&computed.unit) => {
-            return Err(text.refuse(format!(
+            return Err(refuse(MeasuredError::of_file(format!(
                 "the values are in `{unit}`, but {} is in {}; convert them, or name another sensor with --sensor",
                 computed.name, computed.unit
-            )));
+            ))));
         }
         Some(_) => {}
         None => {
@@ -155,11 +153,13 @@ fn read_map(
                 .push(format!("the measured file gives no unit; its values are taken as {unit}"));
         }
     }
+    remarks.extend(assumed);
     let grid = match values {
         MeasuredValues::Surface(grid) | MeasuredValues::Image(grid) => {
             coarsened(&grid, computed.edges())
         }
-        MeasuredValues::Centred(mut grid) => {
+        MeasuredValues::Matrix(matrix) => {
+            let mut grid = placed(matrix, options.place).map_err(refuse)?;
             let middle = computed.edges().map(|edges| 0.5 * (edges[0] + edges[edges.len() - 1]));
             grid.x.iter_mut().for_each(|edge| *edge += middle[0]);
             grid.y.iter_mut().for_each(|edge| *edge += middle[1]);
@@ -168,10 +168,7 @@ fn read_map(
             coarsened(&grid, computed.edges())
         }
         MeasuredValues::Sphere(cells) => sphere_of_cells(&cells, &computed),
-        MeasuredValues::Directions(own) => {
-            remarks.extend(own.remark());
-            sphere_of(|c, gamma| own.at(c, gamma), &computed)
-        }
+        MeasuredValues::Directions(own) => sphere_of(|c, gamma| own.at(c, gamma), &computed),
     };
     Ok((computed, grid))
 }

@@ -4,23 +4,13 @@
 //! neighbours. The mean of that over each computed cell is exact: it averages a finer map, interpolates a coarser one, and keeps a
 //! map of the same cells as it is.
 
+use lumiduct_files::measured::MeasuredGrid;
 use ndarray::{Array2, ArrayView1};
 
 /// Reach beyond the measured map that is rounding, as a share of a cell.
 const ROUNDING: f64 = 1e-6;
 /// Measured cells in a computed one that suffice: finer maps are averaged once before the search.
 const CELLS_PER_CELL: f64 = 8.0;
-
-/// Values over a rectangle, `[[row, column]]`, rows upwards.
-#[derive(Debug, Clone)]
-pub(crate) struct MeasuredGrid {
-    /// Edges of the columns.
-    pub(crate) x: Vec<f64>,
-    /// Edges of the rows.
-    pub(crate) y: Vec<f64>,
-    /// Values; NaN where nothing was measured.
-    pub(crate) values: Array2<f64>,
-}
 
 /// The part of some numbers in a mean.
 #[derive(Debug)]

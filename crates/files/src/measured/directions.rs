@@ -1,9 +1,9 @@
 //! Measured intensities from a row for each direction, linear in between as those of a luminaire file.
 
+use crate::luminaire::{Intensities, PlaneSymmetry};
+use crate::measured::error::MeasuredError;
 use crate::measured::points::GridPoints;
 use crate::measured::table::TextTable;
-use lumiduct_base::error::Result;
-use lumiduct_files::luminaire::{Intensities, PlaneSymmetry};
 
 /// Share of measured directions in a value that is all but rounding, 1.
 const WHOLE: f64 = 1.0 - 1e-9;
@@ -14,7 +14,7 @@ const CLOSED: f64 = 1.5;
 
 /// Intensities at planes C and angles γ.
 #[derive(Debug)]
-pub(crate) struct Directions {
+pub struct MeasuredDirections {
     /// The intensities; 0 where nothing was measured.
     values: Intensities,
     /// 1 where a value was measured, 0 elsewhere.
@@ -23,20 +23,20 @@ pub(crate) struct Directions {
     first_deg: f64,
 }
 
-impl Directions {
+impl MeasuredDirections {
     /// The columns `c_deg`, `gamma_deg` and an intensity.
     ///
     /// # Errors
     ///
-    /// `Error::Usage` with the file, and the line where there is one, if the directions are no planes around the axis.
-    pub(crate) fn read(table: &TextTable) -> Result<Self> {
+    /// [`MeasuredError`] if the directions are no planes around the axis.
+    pub(super) fn read(table: &TextTable<'_>) -> Result<Self, MeasuredError> {
         let GridPoints { x: mut planes, y: mut angles, mut values } =
             GridPoints::read(table, [1, 2])?;
         let last = planes.len() - 1;
         let turn = planes[last] - planes[0];
         if turn > 360.0 + SAME_ANGLE {
             let (from, to) = (planes[0], planes[last]);
-            return Err(table.refuse(format!(
+            return Err(MeasuredError::of_file(format!(
                 "planes C from {from} to {to} deg are more than a circle; give each plane once"
             )));
         }
@@ -65,18 +65,18 @@ impl Directions {
             let last = rows[rows.len() - 1];
             rows.push(last);
         }
-        let symmetry = symmetry(table, &planes)?;
+        let symmetry = symmetry(&planes)?;
         let first_deg = match symmetry {
             PlaneSymmetry::Rotational | PlaneSymmetry::None => planes[0],
             PlaneSymmetry::Quadrants | PlaneSymmetry::AboutC0 | PlaneSymmetry::AboutC90 => 0.0,
         };
         planes.iter_mut().for_each(|plane| *plane -= first_deg);
-        let distribution = |of: fn(f64) -> f64| -> Result<Intensities> {
+        let distribution = |of: fn(f64) -> f64| {
             let (rows, values) = (&rows, &values);
             let plane = move |column: usize| rows.iter().map(move |row| of(values[[*row, column]]));
             let candela = (0..planes.len()).flat_map(plane).collect();
             let own = Intensities::new(symmetry, planes.clone(), angles.clone(), candela);
-            own.map_err(|error| table.refuse(error.to_string()))
+            own.map_err(|error| MeasuredError::of_file(error.to_string()))
         };
         Ok(Self {
             values: distribution(|own| if own.is_nan() { 0.0 } else { own })?,
@@ -85,20 +85,20 @@ impl Directions {
         })
     }
 
-    /// The largest intensity.
-    pub(crate) fn peak(&self) -> f64 {
+    /// The largest intensity, cd or W/sr.
+    pub fn peak(&self) -> f64 {
         self.values.peak()
     }
 
-    /// The intensity in a direction, deg; NaN where it is not measured.
-    pub(crate) fn at(&self, c_deg: f64, gamma_deg: f64) -> f64 {
+    /// The intensity in a direction, cd or W/sr; angles are in degrees. NaN where it is not measured.
+    pub fn at(&self, c_deg: f64, gamma_deg: f64) -> f64 {
         let plane = c_deg - self.first_deg;
         let is_known = self.known.at(plane, gamma_deg) >= WHOLE;
         if is_known { self.values.at(plane, gamma_deg) } else { f64::NAN }
     }
 
     /// A remark on planes that are taken as equal.
-    pub(crate) fn remark(&self) -> Option<String> {
+    pub(super) fn remark(&self) -> Option<String> {
         let symmetry = self.values.symmetry();
         (symmetry != PlaneSymmetry::None).then(|| {
             format!(
@@ -110,7 +110,7 @@ impl Directions {
 }
 
 /// The symmetry whose planes these are, in ascending order.
-fn symmetry(table: &TextTable, planes: &[f64]) -> Result<PlaneSymmetry> {
+fn symmetry(planes: &[f64]) -> Result<PlaneSymmetry, MeasuredError> {
     let [first, last] = [planes[0], planes[planes.len() - 1]];
     let step = planes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     if planes.len() == 1 {
@@ -126,7 +126,7 @@ fn symmetry(table: &TextTable, planes: &[f64]) -> Result<PlaneSymmetry> {
     ];
     let found = parts.into_iter().find(|(_, ends)| *ends == [first, last]);
     found.map(|(symmetry, _)| symmetry).ok_or_else(|| {
-        table.refuse(format!(
+        MeasuredError::of_file(format!(
             "planes C from {first} to {last} deg are no circle; give all planes, or those of a symmetry: one, or from 0 to 90, \
              0 to 180 or 90 to 270 deg"
         ))

@@ -1,7 +1,7 @@
 //! Rows of a measured table with two places and a value each, as rows and columns of a grid.
 
-use crate::measured::table::TextTable;
-use lumiduct_base::error::Result;
+use crate::measured::error::MeasuredError;
+use crate::measured::table::{TextRow, TextTable, number, value};
 use ndarray::Array2;
 
 /// Most cells of a measured map.
@@ -11,13 +11,13 @@ const SAME_PLACE: f64 = 1e-6;
 
 /// Values at single places.
 #[derive(Debug)]
-pub(crate) struct GridPoints {
+pub(super) struct GridPoints {
     /// Places of the columns, in ascending order.
-    pub(crate) x: Vec<f64>,
+    pub(super) x: Vec<f64>,
     /// Places of the rows, in ascending order.
-    pub(crate) y: Vec<f64>,
+    pub(super) y: Vec<f64>,
     /// Values, `[[row, column]]`; NaN where nothing was measured.
-    pub(crate) values: Array2<f64>,
+    pub(super) values: Array2<f64>,
 }
 
 impl GridPoints {
@@ -25,18 +25,18 @@ impl GridPoints {
     ///
     /// # Errors
     ///
-    /// `Error::Usage` with file and line if the cells are no numbers, or the points no grid.
-    pub(crate) fn read(table: &TextTable, least: [usize; 2]) -> Result<Self> {
+    /// [`MeasuredError`] if the cells are no numbers, or the points no grid.
+    pub(super) fn read(table: &TextTable<'_>, least: [usize; 2]) -> Result<Self, MeasuredError> {
         let mut points = Vec::new();
-        for (line, cells) in &table.rows[1..] {
-            let [x, y, value, ..] = &cells[..] else {
-                return Err(table.refuse_line(*line, "fewer than three cells"));
+        for TextRow { line, cells } in &table.rows[1..] {
+            let [x, y, light, ..] = &cells[..] else {
+                return Err(MeasuredError::of_line(*line, "fewer than three cells"));
             };
-            let place = [table.number(*line, x)?, table.number(*line, y)?];
-            points.push((*line, place, table.value(*line, value)?));
+            let place = [number(*line, x)?, number(*line, y)?];
+            points.push((*line, place, value(*line, light)?));
         }
         let [x, y] = [0, 1].map(|axis| lines(points.iter().map(|(_, place, _)| place[axis])));
-        expect_size(table, [x.len(), y.len()], least)?;
+        expect_size([x.len(), y.len()], least)?;
         if 2 * points.len() < x.len() * y.len() {
             let why = format!(
                 "{} points have {} different places in the first column and {} in the second, so they are no rows and columns; \
@@ -45,14 +45,14 @@ impl GridPoints {
                 x.len(),
                 y.len()
             );
-            return Err(table.refuse(why));
+            return Err(MeasuredError::of_file(why));
         }
         let mut values = Array2::from_elem((y.len(), x.len()), f64::NAN);
         let mut is_set = Array2::from_elem(values.dim(), false);
         for (line, place, value) in points {
             let at = [nearest(&y, place[1]), nearest(&x, place[0])];
             if std::mem::replace(&mut is_set[at], true) {
-                return Err(table.refuse_line(line, "a second value at the same place"));
+                return Err(MeasuredError::of_line(line, "a second value at the same place"));
             }
             values[at] = value;
         }
@@ -64,14 +64,13 @@ impl GridPoints {
 ///
 /// # Errors
 ///
-/// `Error::Usage` with the file.
-pub(crate) fn expect_size(
-    table: &TextTable,
+/// [`MeasuredError::NoMap`] with their numbers.
+pub(super) fn expect_size(
     [columns, rows]: [usize; 2],
     least: [usize; 2],
-) -> Result<()> {
+) -> Result<(), MeasuredError> {
     if columns < least[0] || rows < least[1] || columns.saturating_mul(rows) > MOST_CELLS {
-        return Err(table.refuse(format!(
+        return Err(MeasuredError::of_file(format!(
             "{columns} by {rows} values; expected at least {} by {}, and at most {MOST_CELLS} in all",
             least[0], least[1]
         )));
@@ -80,7 +79,7 @@ pub(crate) fn expect_size(
 }
 
 /// The different coordinates, in ascending order.
-pub(crate) fn lines(all: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(super) fn lines(all: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut lines: Vec<f64> = all.collect();
     lines.sort_by(f64::total_cmp);
     let range = lines.last().zip(lines.first()).map_or(0.0, |(last, first)| last - first);
@@ -89,8 +88,17 @@ pub(crate) fn lines(all: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// The nearest of some lines in ascending order.
-pub(crate) fn nearest(lines: &[f64], at: f64) -> usize {
+pub(super) fn nearest(lines: &[f64], at: f64) -> usize {
     let above = lines.partition_point(|line| *line < at).min(lines.len() - 1);
     let is_below = above > 0 && at - lines[above - 1] < lines[above] - at;
     if is_below { above - 1 } else { above }
+}
+
+/// Edges of cells around middles, of which there are two at least: halfway between them.
+pub(super) fn edges(middles: &[f64]) -> Vec<f64> {
+    let last = middles.len() - 1;
+    let between = middles.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let first = middles[0] - 0.5 * (middles[1] - middles[0]);
+    let end = middles[last] + 0.5 * (middles[last] - middles[last - 1]);
+    [first].into_iter().chain(between).chain([end]).collect()
 }

@@ -1,0 +1,188 @@
+use crate::bytes::tests::mutants;
+use crate::measured::*;
+
+/// The cells of a map; those of a plain matrix have the size that it states.
+fn cells(map: MeasuredMap) -> MeasuredGrid {
+    match map.values {
+        MeasuredValues::Matrix(own) => {
+            let size = [own.width, own.height].map(|size| size.unwrap().size_mm);
+            let first = own.first_row.unwrap_or(FirstRow::Top);
+            own.centred(size, first)
+        }
+        MeasuredValues::Surface(grid)
+        | MeasuredValues::Image(grid)
+        | MeasuredValues::Sphere(grid) => grid,
+        MeasuredValues::Directions(_) => panic!("no cells"),
+    }
+}
+
+#[test]
+fn every_form_of_a_map_gives_the_same_cells() {
+    let matrix = "# width_mm = 2\n# height_mm = 4\n# unit = lx\n3 4\n1 2,5\n";
+    let forms = [
+        matrix.to_owned(),
+        matrix.replace("3 4\n1 2,5", "# rows = bottom\n1;2,5\n3;4"),
+        "x_mm,y_mm,e_lx\n-0.5,-1,1\n0.5,-1,2.5\n-0.5,1,3\n0.5,1,4\n".to_owned(),
+        "u_mm,v_mm,e_lx,std_error_lx\n0.5,1,4,9\n-0.5,1,3,9\n0.5,-1,2.5,9\n-0.5,-1,1,9\n".to_owned(),
+        "\u{feff}e in lx,u from in mm,-1,0\n,u to in mm,0,1\nv from in mm,v to in mm,,\n0,2,3,4\n-2,0,1,2.5\n"
+            .to_owned(),
+    ];
+    for text in forms {
+        let map = parse(text.as_bytes()).unwrap();
+        let unit = map.unit.clone();
+        let grid = cells(map);
+        assert_eq!((&grid.x[..], &grid.y[..]), (&[-1.0, 0.0, 1.0][..], &[-2.0, 0.0, 2.0][..]));
+        assert_eq!(grid.values, ndarray::array![[1.0, 2.5], [3.0, 4.0]], "{text}");
+        assert_eq!(unit.as_deref(), Some("lx"));
+    }
+}
+
+#[test]
+fn what_is_no_map_is_refused_with_its_line() {
+    for (text, words) in [
+        ("", "no values"),
+        ("# width_mm = -1\n# height_mm = 1\n1 2\n3 4\n", "line 1: width_mm is not above 0"),
+        ("# width_mm = 1\n# height_mm = 1\n1 2\n3\n", "line 4: 1 cells"),
+        ("# width_mm = 1\n# height_mm = 1\n1 2\n3 x\n", "line 4: `x` is not"),
+        ("# width_mm = 1\n# height_mm = 1\n# rows = up\n1 2\n3 4\n", "line 3: rows must"),
+        ("# width_mm = 1\n# height_mm = 1\n0 0\n0 0\n", "zero or missing"),
+        ("# width_mm = 1\n# height_mm = 1\n1 2\n", "2 by 1 values"),
+        ("a,b,c\n1,2,3\n", "line 1: not a map"),
+        ("sector_deg,radius_mm,e\n0,0,1\n", "rings"),
+        (
+            "e in lx,sector from in deg,0\n,sector to in deg,360\n,,\n0,1,5\n",
+            "line 1: a map of rings",
+        ),
+        ("c_from_deg,c_to_deg,gamma_from_deg\n0,0,1\n", "line 1: not a map"),
+        (
+            "x_mm,y_mm,e_lx\n0,0,1\n1,0,-100000\n0,1,3\n1,1,3\n",
+            "line 3: the value `-100000` is below 0; set readings below the dark level to 0",
+        ),
+        ("# width_mm = 1\n# height_mm = 1\n1 2\n3 -4\n", "line 4: the value `-4` is below 0"),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n0,2,3,-1\n-2,0,1,2\n",
+            "line 4: the value `-1` is below 0",
+        ),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n3,4,3,1\n-2,0,1,2\n",
+            "line 4: the row does not begin where its neighbour ends",
+        ),
+        ("x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n2,2,3\n", "no rows and columns"),
+        ("x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n0,1,3\n1,1,3\n", "line 5: a second value"),
+        ("x_mm,y_mm,e_lx\n0,0\n", "line 2: fewer than three"),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n0,2,3\n-2,0,1,2\n",
+            "do not fit together",
+        ),
+        ("e in lx,u from in mm\n,u to in mm\n,,\n0,2\n-2,0\n", "0 by 2 values"),
+    ] {
+        let said = parse(text.as_bytes()).err().unwrap().to_string();
+        assert!(said.contains(words), "{text:?}: {said}");
+    }
+}
+
+#[test]
+fn directions_are_linear_in_between_and_planes_follow_a_symmetry() {
+    let text = "c_deg,gamma_deg,intensity_cd\n0,0,100\n0,45,80\n0,90,40\n90,45,60\n90,90,\n";
+    let map = parse(text.as_bytes()).unwrap();
+    assert!(map.remarks[0].contains("four equal quadrants"), "{:?}", map.remarks);
+    assert_eq!(map.unit.as_deref(), Some("cd"));
+    let MeasuredValues::Directions(own) = map.values else { panic!("no directions") };
+    assert_eq!(own.peak(), 100.0);
+    for (c, gamma, expected) in [
+        (0.0, 45.0, 80.0),
+        (180.0, 67.5, 60.0),
+        (45.0, 45.0, 70.0),
+        (90.0, 22.5, 80.0),
+        (270.0, 45.0, 60.0),
+    ] {
+        let found = own.at(c, gamma);
+        assert!((found - expected).abs() < 1e-9, "{c} {gamma}: {found}");
+    }
+    assert!(
+        own.at(45.0, 80.0).is_nan() && own.at(90.0, 90.0).is_nan() && own.at(0.0, 100.0).is_nan()
+    );
+    let rotational = parse(b"c_deg,gamma_deg,i_cd\n12,0,5\n12,90,5\n").unwrap();
+    assert!(rotational.remarks[0].contains("rotational"), "{:?}", rotational.remarks);
+}
+
+#[test]
+fn lines_may_end_in_cr_and_another_encoding_is_refused_with_its_line() {
+    let text = "# unit = lx\nx_mm,y_mm,e\n0,0,1\n1,0,2\n0,1,3\n1,1,4\n";
+    for end in ["\n", "\r\n", "\r"] {
+        let text = text.replace('\n', end);
+        let map = parse(text.as_bytes()).unwrap();
+        let unit = map.unit.clone();
+        assert_eq!(cells(map).values, ndarray::array![[1.0, 2.0], [3.0, 4.0]], "{end:?}");
+        assert_eq!(unit.as_deref(), Some("lx"));
+        let said = parse(text.replace('4', "x").as_bytes()).err().unwrap().to_string();
+        assert!(said.contains("line 6: `x` is not"), "{end:?}: {said}");
+        let latin = [text.as_bytes(), b"2,0,\xb5", end.as_bytes()].concat();
+        let said = parse(&latin).err().unwrap().to_string();
+        assert!(said.contains("line 7: not UTF-8 text; save the file"), "{end:?}: {said}");
+    }
+}
+
+#[test]
+fn rows_of_tabs_are_rows_without_a_value_in_a_matrix_alone() {
+    let head = "# width_mm = 1\n# height_mm = 1\n";
+    for (text, rows) in
+        [("\t\n1\t2\n\t\n3\t4\n\t\t\n  \n", 4), ("1\t2\n\t\t\n3\t4\n", 2), ("1 2\n\t\n3 4\n", 2)]
+    {
+        let grid = cells(parse(format!("{head}{text}").as_bytes()).unwrap());
+        assert_eq!(grid.values.dim(), (rows, 2), "{text:?}");
+        assert_eq!(grid.values.iter().filter(|value| value.is_nan()).count(), 2 * (rows - 2));
+    }
+    let points = "\t\t\nx_mm\ty_mm\te\n0\t0\t1\n\t\t\n1\t0\t2\n0\t1\t3\n1\t1\t4\n\t\t\n";
+    assert_eq!(cells(parse(points.as_bytes()).unwrap()).values.dim(), (2, 2));
+}
+
+#[test]
+fn damaged_files_are_read_or_refused() {
+    let matrix =
+        "# width_mm = 3\n# height_mm = 2\n# rows = top\n# unit = lx\n1;2;3,5\n4;;6\n7;8;nan\n";
+    let points = "x_mm,y_mm,e_lx\n0,0,1\n1,0,2\n0,1,3\n1,1,4\n0,2,5\n1,2,nan\n";
+    let directions =
+        "c_deg,gamma_deg,i_cd\n0,0,9\n0,45,5\n0,90,1\n90,45,4\n90,90,\n180,45,3\n180,90,1\n";
+    let list = "c_from_deg,c_to_deg,gamma_from_deg,gamma_to_deg,i_cd\n0,180,0,45,9\n180,360,0,45,8\n0,180,45,90,2\n";
+    let report = "e in lx,u from in mm,-1,0\n,u to in mm,0,1\nv from in mm,v to in mm,,\n0,2,3,4\n-2,0,1,2.5\n";
+    for (text, count) in [
+        (matrix, 100_000),
+        (points, 100_000),
+        (directions, 100_000),
+        (list, 100_000),
+        (report, 100_000),
+    ] {
+        let mut usable = 0;
+        for bytes in mutants(text.as_bytes(), count, 21) {
+            let Ok(map) = parse(&bytes) else { continue };
+            usable += 1;
+            assert_usable(map);
+        }
+        assert!(count / 100 < usable && usable < count, "{text}: {usable} of {count} are usable");
+    }
+}
+
+/// Edges and values can be used as they are.
+fn assert_usable(map: MeasuredMap) {
+    let grid = match map.values {
+        MeasuredValues::Matrix(own) => {
+            assert!([own.width, own.height].iter().flatten().all(|size| size.size_mm > 0.0));
+            own.centred([3.0, 2.0], FirstRow::Top)
+        }
+        MeasuredValues::Surface(grid)
+        | MeasuredValues::Image(grid)
+        | MeasuredValues::Sphere(grid) => grid,
+        MeasuredValues::Directions(own) => {
+            assert!(own.peak() > 0.0);
+            let all = (0..72).map(|place| own.at(f64::from(place * 5), f64::from(place * 2)));
+            return assert!(all.into_iter().all(|value| value.is_nan() || value >= 0.0));
+        }
+    };
+    let (rows, columns) = grid.values.dim();
+    assert_eq!([grid.x.len(), grid.y.len()], [columns + 1, rows + 1]);
+    let is_rising = |edges: &[f64]| edges.windows(2).all(|pair| pair[0] < pair[1]);
+    assert!(is_rising(&grid.x) && is_rising(&grid.y), "{:?} {:?}", grid.x, grid.y);
+    assert!(grid.values.iter().all(|value| value.is_nan() || *value >= 0.0 && value.is_finite()));
+    assert!(grid.values.iter().any(|value| *value > 0.0));
+}

@@ -73,7 +73,7 @@ pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;
 pub use project::Project;
-pub use scatter::{measured_sheet, sheet_checks};
+pub use scatter::measured_sheet;
 pub use spec::study::{Best, Keep, Ranking, Samples};
 pub use study::{
     DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Plan, Setting, Study, StudySettings, Tie,

@@ -2,7 +2,9 @@
 
 use lumiduct_base::math::common_directions;
 use lumiduct_base::number::{format_fixed, format_percent};
-use lumiduct_core::optics::{BsdfTable, DirectedTable, MeasuredSheet, SheetTables};
+use lumiduct_core::optics::{
+    BsdfTable, DirectedTable, MeasuredSheet, SheetChecks, SheetSide, SheetTables,
+};
 use lumiduct_files::scatter::{BsdfMatrix, ScatterFile, ScatterSide};
 
 /// Excess of the energy that a file may have by rounding and noise, 1: values are then scaled down.
@@ -20,17 +22,24 @@ pub fn measured_sheet(
     turn: f64,
 ) -> Result<(MeasuredSheet, Vec<String>), String> {
     let ScatterFile { front, back, mut remarks } = file;
-    let sheet = sheet([front, back], turn, &mut remarks);
-    let sheet = conserving(sheet, &mut remarks)?;
-    let (_, error) = reciprocity(&sheet);
-    if error > RECIPROCAL {
-        remarks.push(sheet_checks(&sheet) + "; both are used as they are");
+    let lines = [&front, &back].map(TableLines::of);
+    let sides = both_sides([front, back], &mut remarks);
+    let most = LargestShare::of(&sides);
+    let sides = conserving(sides, &most, &mut remarks)
+        .map_err(|problem| format!("line {}: {problem}", most.line(lines)))?;
+    let (irreversible, reciprocity_error) = reciprocity(&sides);
+    // Scaled down where it was more.
+    let largest_share = most.share.min(1.0);
+    let checks = SheetChecks { largest_share, irreversible, reciprocity_error };
+    if reciprocity_error > RECIPROCAL {
+        remarks.push(format!("{checks}; both are used as they are"));
     }
-    Ok((sheet, remarks))
+    let [front, back] = sides;
+    Ok((MeasuredSheet { front, back, turn, checks }, remarks))
 }
 
 /// The tables of both sides. Transmission that is given for one side alone is taken as reciprocal.
-fn sheet(sides: [ScatterSide; 2], turn: f64, remarks: &mut Vec<String>) -> MeasuredSheet {
+fn both_sides(sides: [ScatterSide; 2], remarks: &mut Vec<String>) -> [SheetTables; 2] {
     let [mut front, mut back] = sides.map(tables);
     let other = match (&front.transmission, &back.transmission) {
         (Some(given), None) => Some(("back", "front", given, given.reversed())),
@@ -58,43 +67,109 @@ fn sheet(sides: [ScatterSide; 2], turn: f64, remarks: &mut Vec<String>) -> Measu
             remarks.push(format!("no reflection by the {name} is given; it is taken as 0"));
         }
     }
-    MeasuredSheet { front, back, turn }
+    [front, back]
 }
 
 fn tables(side: ScatterSide) -> SheetTables {
     let table = |matrix: Option<BsdfMatrix>| {
-        let BsdfMatrix { pairs, values } = matrix?;
+        let BsdfMatrix { pairs, values, .. } = matrix?;
         BsdfTable::new(pairs, &values).map(DirectedTable::new)
     };
     SheetTables { reflection: table(side.reflection), transmission: table(side.transmission) }
 }
 
-/// The sheet without excess of energy, or what is wrong.
-fn conserving(sheet: MeasuredSheet, remarks: &mut Vec<String>) -> Result<MeasuredSheet, String> {
-    let sides = [("front", &sheet.front), ("back", &sheet.back)];
-    let most = sides.map(|(name, side)| (name, largest_share(side)));
-    let (name, (share, angle)) = if most[1].1.0 > most[0].1.0 { most[1] } else { most[0] };
-    if share <= 1.0 {
-        return Ok(sheet);
+/// Lines of the first values of the tables of a side, from 1.
+#[derive(Clone, Copy)]
+struct TableLines {
+    reflection: Option<usize>,
+    transmission: Option<usize>,
+}
+
+impl TableLines {
+    fn of(side: &ScatterSide) -> Self {
+        let line = |matrix: &Option<BsdfMatrix>| matrix.as_ref().map(|matrix| matrix.line);
+        Self { reflection: line(&side.reflection), transmission: line(&side.transmission) }
     }
-    let angle = format_fixed(angle.to_degrees(), 1);
+}
+
+/// The largest share of light from a direction that leaves a sheet.
+struct LargestShare {
+    /// The side that the light meets.
+    side: SheetSide,
+    /// The share, 1.
+    share: f64,
+    /// How much of it is reflected, 1.
+    reflected: f64,
+    /// Its angle of incidence, rad.
+    angle: f64,
+}
+
+impl LargestShare {
+    fn of([front, back]: &[SheetTables; 2]) -> Self {
+        let [front, back] = [(SheetSide::Front, front), (SheetSide::Back, back)]
+            .map(|(side, tables)| Self::of_side(side, tables));
+        if back.share > front.share { back } else { front }
+    }
+
+    fn of_side(side: SheetSide, tables: &SheetTables) -> Self {
+        let all = [&tables.reflection, &tables.transmission].map(Option::as_ref);
+        let divisions: Vec<_> =
+            all.into_iter().flatten().map(|table| table.incident_patches()).collect();
+        let shares = common_directions(&divisions).into_iter().map(|from| {
+            let [reflected, transmitted] =
+                all.map(|table| table.map_or(0.0, |table| table.share(from)));
+            let angle = from.length().min(1.0).asin();
+            Self { side, share: reflected + transmitted, reflected, angle }
+        });
+        let none = Self { side, share: 0.0, reflected: 0.0, angle: 0.0 };
+        shares.fold(none, |most, own| if own.share > most.share { own } else { most })
+    }
+
+    /// The line of the first value of the table with the larger part of it, from 1.
+    fn line(&self, [front, back]: [TableLines; 2]) -> usize {
+        let (own, other) = match self.side {
+            SheetSide::Front => (front, back),
+            SheetSide::Back => (back, front),
+        };
+        // Transmission may be the reverse of that from the other side.
+        let transmission = own.transmission.or(other.transmission);
+        let is_reflected = 2.0 * self.reflected > self.share;
+        let line = if is_reflected { own.reflection } else { transmission };
+        line.expect("light that leaves is that of a table")
+    }
+}
+
+/// Both sides without excess of energy, or what is wrong.
+fn conserving(
+    sides: [SheetTables; 2],
+    most: &LargestShare,
+    remarks: &mut Vec<String>,
+) -> Result<[SheetTables; 2], String> {
+    let share = most.share;
+    if share <= 1.0 {
+        return Ok(sides);
+    }
+    let name = match most.side {
+        SheetSide::Front => "front",
+        SheetSide::Back => "back",
+    };
+    let angle = format_fixed(most.angle.to_degrees(), 1);
     let what = format!(
         "of light that meets the {name} at {angle} deg, {} is reflected and transmitted",
         format_percent(share)
     );
     if share > 1.0 + MOST_EXCESS {
-        let [front, back] = [&sheet.front, &sheet.back].map(|side| side.transmission.as_ref());
+        let [front, back] = sides.each_ref().map(|side| side.transmission.as_ref());
         let is_reverse = front.zip(back).is_some_and(|(front, back)| front.is_reverse_of(back));
         let cause = if is_reverse { ", or transmission is not reciprocal" } else { "" };
         return Err(format!("{what}, more than 100 %; values may not be in 1/sr{cause}"));
     }
     remarks.push(format!("{what}; all values are scaled down to 100 %"));
-    let scaled = |side: SheetTables| {
+    Ok(sides.map(|side| {
         let [reflection, transmission] = [side.reflection, side.transmission]
             .map(|table| table.map(|table| table.scaled((1.0 - f64::EPSILON) / share)));
         SheetTables { reflection, transmission }
-    };
-    Ok(MeasuredSheet { front: scaled(sheet.front), back: scaled(sheet.back), turn: sheet.turn })
+    }))
 }
 
 /// The largest difference of the shares that two tables pass on from a direction, 1.
@@ -104,35 +179,8 @@ fn largest_difference(a: &DirectedTable, b: &DirectedTable) -> f64 {
     differences.fold(0.0, f64::max)
 }
 
-/// The largest share of light that leaves in any direction, 1, and its angle of incidence, rad.
-fn largest_share(side: &SheetTables) -> (f64, f64) {
-    let tables = [&side.reflection, &side.transmission].map(Option::as_ref);
-    let tables: Vec<&DirectedTable> = tables.into_iter().flatten().collect();
-    let divisions: Vec<_> = tables.iter().map(|table| table.incident_patches()).collect();
-    let shares = common_directions(&divisions).into_iter().map(|from| {
-        let share: f64 = tables.iter().map(|table| table.share(from)).sum();
-        (share, from.length().min(1.0).asin())
-    });
-    shares.fold((0.0, 0.0), |most, own| if own.0 > most.0 { own } else { most })
-}
-
-/// What checks of energy and reciprocity find of a sheet, in words.
-pub fn sheet_checks(sheet: &MeasuredSheet) -> String {
-    let sides = [&sheet.front, &sheet.back];
-    let most = sides.map(|side| largest_share(side).0).into_iter().fold(0.0, f64::max);
-    let energy = format!("at most {} of the light from a direction leaves", format_percent(most));
-    match reciprocity(sheet) {
-        (what, error) if error > 0.0 => format!(
-            "{energy}; over its patches, its {what} differs from that of the paths backwards by {} (rms)",
-            format_percent(error)
-        ),
-        _ => format!("{energy}; its values are the same for the paths backwards"),
-    }
-}
-
 /// What differs most from the paths backwards, and how much, 1.
-fn reciprocity(sheet: &MeasuredSheet) -> (&'static str, f64) {
-    let MeasuredSheet { front, back, .. } = sheet;
+fn reciprocity([front, back]: &[SheetTables; 2]) -> (&'static str, f64) {
     let pairs = [
         ("reflection by the front", &front.reflection, &front.reflection),
         ("reflection by the back", &back.reflection, &back.reflection),

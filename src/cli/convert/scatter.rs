@@ -4,7 +4,7 @@ use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_percent;
 use lumiduct_core::optics::{DirectedTable, SheetTables};
 use lumiduct_files::scatter;
-use lumiduct_input::{measured_sheet, sheet_checks};
+use lumiduct_input::measured_sheet;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub(super) fn description(path: &Path) -> Result<String> {
         row(&mut text, &format!("reflected by the {name}"), reflection.as_ref());
         row(&mut text, &format!("transmitted from the {name}"), transmission.as_ref());
     }
-    _ = writeln!(text, "checked: {}", sheet_checks(&sheet));
+    _ = writeln!(text, "checked: {}", sheet.checks);
     for remark in remarks {
         _ = writeln!(text, "remark: {remark}");
     }

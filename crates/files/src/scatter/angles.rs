@@ -26,6 +26,8 @@ pub(super) struct SampledScatter {
     pub(super) azimuth: Vec<f64>,
     /// Values, 1/sr, the azimuth fastest.
     pub(super) values: Vec<f64>,
+    /// Line of the first value, from 1.
+    pub(super) line: usize,
 }
 
 /// Rings of arriving light, and rings and sectors of leaving light.
@@ -51,7 +53,8 @@ impl SampledScatter {
         let values = self.means(&patches);
         let remarks = self.remarks(patches.step_deg);
         let SamplePatches { incident, leaving, .. } = patches;
-        Some((BsdfMatrix { pairs: PatchPairs::Isotropic { incident, leaving }, values }, remarks))
+        let pairs = PatchPairs::Isotropic { incident, leaving };
+        Some((BsdfMatrix { pairs, values, line: self.line }, remarks))
     }
 
     fn remarks(&self, step_deg: f64) -> Vec<String> {

@@ -6,6 +6,11 @@ use roxmltree::Node;
 
 /// Most patches of a basis.
 const MOST_PATCHES: usize = 4096;
+/// Most rings of a basis: reflection and transmission are added where their patches overlap, and rings of the one times sectors of the
+/// other would be millions of overlaps.
+const MOST_RINGS: usize = 256;
+/// Most sectors of a ring, for the same reason.
+const MOST_SECTORS: usize = 1024;
 
 /// Polar angles between rings, deg, and sectors, of the bases that need no definition (J. H. Klems, A new method for predicting
 /// the solar heat gain of complex fenestration systems, ASHRAE Transactions 100, 1994; half and quarter as in Radiance).
@@ -70,12 +75,15 @@ fn defined_basis(node: Node<'_, '_>) -> Result<RingPatches, Violation> {
             return Err(wrong(problem));
         }
         let word = text(block, "nPhis").unwrap_or_default().trim();
-        let phis = word.parse::<usize>().ok().filter(|phis| (1..=MOST_PATCHES).contains(phis));
+        let phis = word.parse::<usize>().ok().filter(|phis| (1..=MOST_SECTORS).contains(phis));
         let phis =
-            phis.ok_or_else(|| wrong(format!("nPhis is `{word}`, expected 1 to {MOST_PATCHES}")))?;
+            phis.ok_or_else(|| wrong(format!("nPhis is `{word}`, expected 1 to {MOST_SECTORS}")))?;
         count += phis;
         if count > MOST_PATCHES {
             return Err(wrong(format!("more than {MOST_PATCHES} patches")));
+        }
+        if sectors.len() == MOST_RINGS {
+            return Err(wrong(format!("more than {MOST_RINGS} rings")));
         }
         angles.push(upper);
         sectors.push(phis);

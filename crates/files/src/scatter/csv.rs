@@ -58,6 +58,8 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
         return Err(missing(BRDF));
     }
     let mut samples = [Samples::new(), Samples::new()];
+    let mut lines = lines.peekable();
+    let first_line = lines.peek().map_or(head_line, |(number, _)| *number);
     for (number, line) in lines {
         let words: Vec<&str> = line.split(',').map(str::trim).collect();
         if words.len() != names.len() {
@@ -85,7 +87,7 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
     let mut remarks: Vec<String> = Vec::new();
     let mut matrix = |own: &Samples, at: Option<usize>| {
         at.map(|_| {
-            let (matrix, assumed) = averaged(own, head_line)?;
+            let (matrix, assumed) = averaged(own, [head_line, first_line])?;
             for remark in assumed {
                 if !remarks.contains(&remark) {
                     remarks.push(remark);
@@ -113,7 +115,10 @@ fn angle(word: &str, name: &str, most: f64, line: usize) -> Result<AngleKey, Vio
 }
 
 /// The values over patches, and what was assumed.
-fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<String>), Violation> {
+fn averaged(
+    samples: &Samples,
+    [head_line, first_line]: [usize; 2],
+) -> Result<(BsdfMatrix, Vec<String>), Violation> {
     if samples.is_empty() {
         return Err(Violation::new(head_line, "no rows follow the names of the columns"));
     }
@@ -150,7 +155,7 @@ fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<Stri
     }
     let [incident, polar, azimuth] =
         keys.map(|keys| keys.into_iter().map(|key| f64::from(key) / UNITS_PER_DEG).collect());
-    let averaged = SampledScatter { incident, polar, azimuth, values }.matrix();
+    let averaged = SampledScatter { incident, polar, azimuth, values, line: first_line }.matrix();
     averaged.ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
 }
 

@@ -30,4 +30,6 @@ pub struct BsdfMatrix {
     pub pairs: PatchPairs,
     /// Values, 1/sr: for each patch of arriving light one for each patch of leaving light.
     pub values: Vec<f64>,
+    /// Line of the first value in the file, from 1.
+    pub line: usize,
 }

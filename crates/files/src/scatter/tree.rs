@@ -29,6 +29,8 @@ pub(super) fn tensor_tree(
     remarks: &mut Vec<String>,
 ) -> Result<BsdfMatrix, Violation> {
     let mut reader = TreeReader { rest: text, line: first_line, dimensions };
+    reader.peek();
+    let line = reader.line;
     let root = reader.node(0)?;
     if let Some(found) = reader.peek() {
         return Err(reader.wrong(format!("`{found}` follows the tree")));
@@ -48,10 +50,10 @@ pub(super) fn tensor_tree(
         let side = grid.side;
         let squares = DirectionPatches::Squares { side };
         let pairs = PatchPairs::Fixed { incident: squares.clone(), leaving: squares };
-        return Ok(BsdfMatrix { pairs, values: grid.values });
+        return Ok(BsdfMatrix { pairs, values: grid.values, line });
     }
     remarks.push("its tree without grain is averaged over rings and sectors".to_owned());
-    isotropic(&grid).ok_or_else(|| Violation::new(first_line, "the tree has no incident angles"))
+    isotropic(&grid, line).ok_or_else(|| Violation::new(line, "the tree has no incident angles"))
 }
 
 /// Reads nodes from a text.
@@ -195,37 +197,37 @@ impl CubeGrid {
 }
 
 /// A tree without grain over rings of incidence and rings and sectors of leaving light; `None` if it is not divided.
-fn isotropic(grid: &CubeGrid) -> Option<BsdfMatrix> {
+fn isotropic(grid: &CubeGrid, line: usize) -> Option<BsdfMatrix> {
     // One incident half at least.
     let count = (grid.side / 2).max(1);
     let angles: Vec<f64> = (0..=count).map(|ring| (ring as f64 / count as f64).asin()).collect();
     let incident = RingPatches::new(&angles, vec![1; count])?;
     let leaving = RingPatches::new(&angles, (0..count).map(|ring| 8 * (2 * ring + 1)).collect())?;
     let patches = DirectionPatches::Rings(leaving.clone());
+    // The squares of the points of each patch, which are the same for all rings of incidence.
+    let square_of = |at: usize| {
+        let (patch, index) = (at / (POINTS * POINTS), at % (POINTS * POINTS));
+        let u = [index / POINTS, index % POINTS].map(|line| (line as f64 + 0.5) / POINTS as f64);
+        let square = square_of_disk(patches.direction(patch, u)) * grid.side as f64;
+        let [x, y] = [square.x, square.y].map(|at| (at as usize).min(grid.side - 1));
+        x * grid.side + y
+    };
+    let squares: Vec<usize> = (0..patches.count() * POINTS * POINTS).map(square_of).collect();
     let mut values = Vec::with_capacity(count * patches.count());
     for ring in 0..count {
         // The middle of the ring: half of one less the sine, in lines.
         let from = (count - 1 - ring).min(grid.side - 1);
-        let at = |line: [usize; 2]| grid.values[grid.place([from, line[0], line[1], 0])];
-        let mean = |patch: usize| {
-            let point = |index: usize| {
-                let u = [index / POINTS, index % POINTS]
-                    .map(|line| (line as f64 + 0.5) / POINTS as f64);
-                let square = square_of_disk(patches.direction(patch, u)) * grid.side as f64;
-                at([square.x, square.y].map(|at| (at as usize).min(grid.side - 1)))
-            };
-            let points = POINTS * POINTS;
-            (0..points).map(point).sum::<f64>() / points as f64
+        let slice = &grid.values[from * grid.side * grid.side..][..grid.side * grid.side];
+        let mean = |points: &[usize]| {
+            points.iter().map(|square| slice[*square]).sum::<f64>() / points.len() as f64
         };
-        let means: Vec<f64> = (0..patches.count()).map(mean).collect();
+        let means: Vec<f64> = squares.chunks(POINTS * POINTS).map(mean).collect();
         // Points may miss parts of squares; the share of light is that of the tree.
-        let squares = grid.side * grid.side;
-        let slice = (0..squares).map(|place| at([place / grid.side, place % grid.side]));
-        let share = PI * slice.sum::<f64>() / squares as f64;
+        let share = PI * slice.iter().sum::<f64>() / slice.len() as f64;
         let found = means.iter().zip(0..).map(|(mean, patch)| mean * patches.projected(patch));
         let found: f64 = found.sum();
         let factor = if found > 0.0 { share / found } else { 0.0 };
         values.extend(means.into_iter().map(|mean| factor * mean));
     }
-    Some(BsdfMatrix { pairs: PatchPairs::Isotropic { incident, leaving }, values })
+    Some(BsdfMatrix { pairs: PatchPairs::Isotropic { incident, leaving }, values, line })
 }

@@ -69,8 +69,13 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
         let remark = format!("only its visible data are used, not {}", left_out.join(", "));
         file.remarks.push(remark);
     }
-    file.remarks.dedup();
-    Ok(file)
+    let mut remarks: Vec<String> = Vec::new();
+    for remark in file.remarks {
+        if !remarks.contains(&remark) {
+            remarks.push(remark);
+        }
+    }
+    Ok(ScatterFile { remarks, ..file })
 }
 
 fn layout(definition: Node<'_, '_>) -> Result<IncidentData, Violation> {
@@ -131,7 +136,9 @@ fn add_block(
         IncidentData::Columns | IncidentData::Rows => {
             let pairs = pairs(block, bases, line)?;
             let values = matrix_values(words, first_line, &pairs, layout)?;
-            BsdfMatrix { pairs, values }
+            let before = words.len() - words.trim_start().len();
+            let line = first_line + words[..before].matches('\n').count();
+            BsdfMatrix { pairs, values, line }
         }
     };
     *place = Some(matrix);

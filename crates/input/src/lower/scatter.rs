@@ -43,7 +43,7 @@ impl Context<'_> {
         for side in [&file.front, &file.back] {
             for matrix in [&side.reflection, &side.transmission] {
                 self.meshes.add(&[u8::from(matrix.is_some())]);
-                let Some(BsdfMatrix { pairs, values }) = matrix else { continue };
+                let Some(BsdfMatrix { pairs, values, .. }) = matrix else { continue };
                 let [incident, leaving] = pairs.counts();
                 let sizes = (0..incident).map(|patch| pairs.incident_projected(patch));
                 let sizes = sizes.chain((0..leaving).map(|patch| pairs.leaving_projected(patch)));

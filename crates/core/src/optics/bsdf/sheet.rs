@@ -1,10 +1,14 @@
 //! Tables of a sheet for light that meets either side.
 
-use crate::optics::bsdf::table::BsdfTable;
+use crate::optics::bsdf::table::{BsdfTable, PatchPlace};
 use glam::DVec2;
 use lumiduct_base::math::{DirectionPatches, circle};
+use lumiduct_base::number::format_percent;
+use std::fmt;
 use std::sync::Arc;
 
+/// Difference of values that is rounding, relative to them, 1.
+const ROUNDING: f64 = 1e-9;
 /// Azimuths and rings over which shares are averaged.
 const AZIMUTHS: u32 = 360;
 const RINGS: u32 = 400;
@@ -89,12 +93,15 @@ impl DirectedTable {
     /// light is reciprocal, if the other one is that of the side where light of this one arrives. 0 without light.
     pub fn reciprocity_error(&self, other: &Self) -> f64 {
         let [incident, leaving] = self.directions();
+        let turned = [&leaving, &incident].map(|all| all.iter().map(|at| -*at).collect::<Vec<_>>());
+        let own = PairValues::new(self, [&incident, &leaving]);
+        let backwards = PairValues::new(other, [&turned[0], &turned[1]]);
         let (mut squares, mut differences) = (0.0, 0.0);
-        for from in &incident {
-            for to in &leaving {
-                let value = self.value(*from, *to);
+        for from in 0..incident.len() {
+            for to in 0..leaving.len() {
+                let value = own.value(from, to);
                 squares += value * value;
-                differences += (value - other.value(-*to, -*from)).powi(2);
+                differences += (value - backwards.value(to, from)).powi(2);
             }
         }
         if squares > 0.0 { f64::sqrt(differences / squares) } else { 0.0 }
@@ -141,6 +148,38 @@ impl DirectedTable {
     }
 }
 
+/// Values of a table between given directions, each of which is found once.
+struct PairValues<'a> {
+    table: &'a DirectedTable,
+    /// Of arriving and of leaving light.
+    places: [Vec<PatchPlace>; 2],
+}
+
+impl<'a> PairValues<'a> {
+    fn new(table: &'a DirectedTable, [from, to]: [&[DVec2]; 2]) -> Self {
+        let DirectedTable { table: own, is_reversed } = table;
+        let places = if *is_reversed {
+            [
+                from.iter().map(|at| own.leaving_place(-*at)).collect(),
+                to.iter().map(|at| own.incident_place(-*at)).collect(),
+            ]
+        } else {
+            [
+                from.iter().map(|at| own.incident_place(*at)).collect(),
+                to.iter().map(|at| own.leaving_place(*at)).collect(),
+            ]
+        };
+        Self { table, places }
+    }
+
+    /// The distribution function, 1/sr.
+    fn value(&self, from: usize, to: usize) -> f64 {
+        let DirectedTable { table, is_reversed } = self.table;
+        let [from, to] = [&self.places[0][from], &self.places[1][to]];
+        if *is_reversed { table.value_at(to, from) } else { table.value_at(from, to) }
+    }
+}
+
 /// A sheet with measured scatter. Its tables have the direction cosines of travel along x and y of the sheet: y is the grain,
 /// turned about the normal of the front, and x points to the right as seen by an observer who faces the back with y upward.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,6 +190,35 @@ pub struct MeasuredSheet {
     pub back: SheetTables,
     /// Angle from the grain to y about the normal of the front, rad.
     pub turn: f64,
+    /// What was found when its tables were made.
+    pub checks: SheetChecks,
+}
+
+/// What checks of energy and reciprocity find of the tables of a sheet.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SheetChecks {
+    /// The largest share of light from a direction that leaves, 1.
+    pub largest_share: f64,
+    /// What differs most from the paths backwards: `transmission`.
+    pub irreversible: &'static str,
+    /// Root mean square of that difference, relative to that of the values, 1.
+    pub reciprocity_error: f64,
+}
+
+impl fmt::Display for SheetChecks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let largest = format_percent(self.largest_share);
+        write!(f, "at most {largest} of the light from a direction leaves; ")?;
+        if self.reciprocity_error > ROUNDING {
+            let (what, error) = (self.irreversible, format_percent(self.reciprocity_error));
+            write!(
+                f,
+                "over its patches, its {what} differs from that of the paths backwards by {error} (rms)"
+            )
+        } else {
+            f.write_str("its values are the same for the paths backwards")
+        }
+    }
 }
 
 impl MeasuredSheet {

@@ -19,6 +19,14 @@ pub struct BsdfTable {
     arriving: CumulativeRows,
 }
 
+/// Where a direction is in a table: finding it takes longer than the value of two places.
+pub(crate) struct PatchPlace {
+    /// The patch; without grain the ring.
+    patch: usize,
+    /// The azimuth, in turns from 0 to 1; 0 with grain.
+    turns: f64,
+}
+
 impl BsdfTable {
     /// From values, 1/sr: for each patch of arriving light one for each patch of leaving light. `None` if their number is
     /// wrong, or one is negative or not finite.
@@ -30,15 +38,18 @@ impl BsdfTable {
         }
         let value = |from: usize, to: usize| values[from * leaving + to];
         let solid: Vec<f64> = (0..leaving).map(|to| pairs.leaving_projected(to)).collect();
-        let leaving_rows = CumulativeRows::new(
-            (0..incident).map(|from| (0..leaving).map(|to| value(from, to) * solid[to]).collect()),
-        );
+        let row = |from: usize| (0..leaving).map(|to| value(from, to) * solid[to]).collect();
+        let leaving_rows = match &pairs {
+            PatchPairs::Fixed { leaving, .. } => fixed_rows(leaving, (0..incident).map(row)),
+            PatchPairs::Isotropic { .. } => CumulativeRows::new((0..incident).map(row)),
+        };
         let solid: Vec<f64> = (0..incident).map(|from| pairs.incident_projected(from)).collect();
         let arriving_rows = match &pairs {
-            PatchPairs::Fixed { .. } => CumulativeRows::new(
-                (0..leaving)
-                    .map(|to| (0..incident).map(|from| value(from, to) * solid[from]).collect()),
-            ),
+            PatchPairs::Fixed { incident: patches, .. } => {
+                let row =
+                    |to: usize| (0..incident).map(|from| value(from, to) * solid[from]).collect();
+                fixed_rows(patches, (0..leaving).map(row))
+            }
             PatchPairs::Isotropic { leaving, .. } => {
                 CumulativeRows::new((0..leaving.rings()).map(|ring| {
                     let count = leaving.sectors(ring);
@@ -51,6 +62,12 @@ impl BsdfTable {
             }
         };
         Some(Self { pairs, leaving: leaving_rows, arriving: arriving_rows })
+    }
+
+    /// Numbers that are stored for both directions of paths.
+    #[cfg(test)]
+    pub(crate) fn stored_weights(&self) -> usize {
+        self.leaving.runs() + self.arriving.runs()
     }
 
     /// Whether it has axes of its own on the face.
@@ -100,16 +117,33 @@ impl BsdfTable {
 
     /// The distribution function, 1/sr.
     pub(crate) fn value(&self, from: DVec2, to: DVec2) -> f64 {
-        let row = self.pairs.incident(from);
+        self.value_at(&self.incident_place(from), &self.leaving_place(to))
+    }
+
+    /// The distribution function between places, 1/sr.
+    pub(crate) fn value_at(&self, from: &PatchPlace, to: &PatchPlace) -> f64 {
         let column = match &self.pairs {
-            PatchPairs::Fixed { leaving, .. } => leaving.patch(to),
+            PatchPairs::Fixed { .. } => to.patch,
             PatchPairs::Isotropic { leaving, .. } => {
-                let ring = leaving.ring(to.length_squared());
-                let turn = (turns(to) - turns(from)).rem_euclid(1.0);
-                leaving.first(ring) + leaving.sector(ring, turn)
+                let turn = (to.turns - from.turns).rem_euclid(1.0);
+                leaving.first(to.patch) + leaving.sector(to.patch, turn)
             }
         };
-        self.leaving.weight(row, column) / self.pairs.leaving_projected(column)
+        self.leaving.weight(from.patch, column) / self.pairs.leaving_projected(column)
+    }
+
+    /// The place of a direction of arriving light.
+    pub(crate) fn incident_place(&self, from: DVec2) -> PatchPlace {
+        PatchPlace { patch: self.pairs.incident(from), turns: self.turns_of(from) }
+    }
+
+    /// The place of a direction of leaving light.
+    pub(crate) fn leaving_place(&self, to: DVec2) -> PatchPlace {
+        PatchPlace { patch: self.arriving_row(to), turns: self.turns_of(to) }
+    }
+
+    fn turns_of(&self, cosines: DVec2) -> f64 {
+        if self.has_grain() { 0.0 } else { turns(cosines) }
     }
 
     /// A direction in which light leaves; its density is `f cos θ_o` over the share.
@@ -151,5 +185,14 @@ impl BsdfTable {
             PatchPairs::Fixed { leaving, .. } => leaving.patch(to),
             PatchPairs::Isotropic { leaving, .. } => leaving.ring(to.length_squared()),
         }
+    }
+}
+
+/// Rows over patches in axes of the face. Squares are often parts of a coarser tree; rings stay as they are, so that their sums
+/// round in one way.
+fn fixed_rows(columns: &DirectionPatches, rows: impl Iterator<Item = Vec<f64>>) -> CumulativeRows {
+    match columns {
+        DirectionPatches::Squares { .. } => CumulativeRows::merged(rows),
+        DirectionPatches::Rings(_) => CumulativeRows::new(rows),
     }
 }

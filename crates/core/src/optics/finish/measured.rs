@@ -147,7 +147,7 @@ impl FinishModel for MetSheet<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::bsdf::sheet::SheetTables;
+    use crate::optics::bsdf::sheet::{SheetChecks, SheetTables};
     use crate::optics::bsdf::table::BsdfTable;
     use crate::optics::finish::testing::{
         assert_adjoint, assert_follows, diffuse, incidence, splitter,
@@ -201,6 +201,7 @@ mod tests {
                     transmission: Some(transmission),
                 },
                 turn: 0.4,
+                checks: SheetChecks::default(),
             }
         };
         let both = sheet(with_grain);
@@ -265,7 +266,8 @@ mod tests {
         let patches = PatchPairs::Fixed { incident: squares.clone(), leaving: squares.clone() };
         let table = DirectedTable::new(BsdfTable::new(patches, &values).unwrap());
         let tables = SheetTables { reflection: None, transmission: Some(table) };
-        let sheet = MeasuredSheet { front: tables.clone(), back: tables, turn: 0.3 };
+        let checks = SheetChecks::default();
+        let sheet = MeasuredSheet { front: tables.clone(), back: tables, turn: 0.3, checks };
         for (met, normal) in [(SheetSide::Front, DVec3::Z), (SheetSide::Back, DVec3::NEG_Z)] {
             let finish = Finish::MeasuredSheet { sheet: Arc::new(sheet.clone()), met };
             for dir in [DVec3::new(0.3, 0.5, -0.2), DVec3::new(-0.7, 0.1, -0.4)] {
@@ -289,7 +291,8 @@ mod tests {
         let pairs = PatchPairs::Fixed { incident: squares.clone(), leaving: squares };
         let table = DirectedTable::new(BsdfTable::new(pairs, &values).unwrap());
         let tables = SheetTables { reflection: None, transmission: Some(table) };
-        let sheet = MeasuredSheet { front: tables.clone(), back: tables, turn: 0.0 };
+        let checks = SheetChecks::default();
+        let sheet = MeasuredSheet { front: tables.clone(), back: tables, turn: 0.0, checks };
         // The front is above, y is +y of the scene: who looks up from below has -x to the right.
         for (met, normal) in [(SheetSide::Front, DVec3::Z), (SheetSide::Back, DVec3::NEG_Z)] {
             let finish = Finish::MeasuredSheet { sheet: Arc::new(sheet.clone()), met };
@@ -312,6 +315,51 @@ mod tests {
             let mut values = good.clone();
             values[3] = wrong;
             assert!(BsdfTable::new(patches.clone(), &values).is_none());
+        }
+    }
+    #[test]
+    fn reciprocity_is_that_of_all_pairs_of_directions() {
+        let sheets = sheets();
+        let pairs = sheets.iter().flat_map(|sheet| {
+            let MeasuredSheet { front, back, .. } = &**sheet;
+            [
+                (front.reflection.as_ref(), front.reflection.as_ref()),
+                (front.transmission.as_ref(), back.reflection.as_ref()),
+                (back.transmission.as_ref(), front.transmission.as_ref()),
+                (back.transmission.as_ref(), back.reflection.as_ref()),
+            ]
+        });
+        for (table, other) in pairs.filter_map(|(table, other)| table.zip(other)) {
+            let [incident, leaving] = table.directions();
+            let (mut squares, mut differences) = (0.0, 0.0);
+            for (from, to) in
+                incident.iter().flat_map(|from| leaving.iter().map(move |to| (from, to)))
+            {
+                let value = table.value(*from, *to);
+                squares += value * value;
+                differences += (value - other.value(-*to, -*from)).powi(2);
+            }
+            assert_eq!(table.reciprocity_error(other), f64::sqrt(differences / squares));
+        }
+    }
+
+    #[test]
+    fn a_deep_tree_takes_little_space() {
+        // Squares of arriving and of leaving light, 32 by 32 each: few of their pairs differ from the others.
+        let squares = DirectionPatches::Squares { side: 32 };
+        let pairs = PatchPairs::Fixed { incident: squares.clone(), leaving: squares };
+        let value = |at: usize| match (at / 1024, at % 1024) {
+            (3, 5) => 0.3,
+            (700..704, 100..200) => 0.2,
+            _ => 0.1,
+        };
+        let values: Vec<f64> = (0..1024 * 1024).map(value).collect();
+        let table = BsdfTable::new(pairs, &values).unwrap();
+        assert!(table.stored_weights() < 3000, "{}", table.stored_weights());
+        let [from, to] = table.directions();
+        for (at, value) in values.iter().enumerate().step_by(1009).chain([(3077, &0.3)]) {
+            let found = table.value(from[at / 1024], to[at % 1024]);
+            assert!((found - value).abs() < 1e-9, "{at}: {found}");
         }
     }
 }

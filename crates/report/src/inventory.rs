@@ -147,7 +147,7 @@ fn finishes(scene: &Scene, outline: &Outline) -> Listing {
     let of_faces = scene.faces.iter().flat_map(|face| [face.front, face.back]).flatten();
     let of_patterns = scene.patterns.iter().flat_map(|pattern| [pattern.front, pattern.back]);
     let used: BTreeSet<usize> = of_faces.chain(of_patterns).map(|id| id.index()).collect();
-    let rows: Vec<[String; 2]> = used
+    let rows: Vec<[String; 3]> = used
         .into_iter()
         .filter_map(|index| {
             let name = &scene.finishes[index].name;
@@ -155,10 +155,12 @@ fn finishes(scene: &Scene, outline: &Outline) -> Listing {
                 told if !told.is_empty() => told,
                 _ => predefined(name)?.to_owned(),
             };
-            Some([name.clone(), words])
+            let sheets = scene.finishes[index].finish.measured_sheets();
+            let checks: Vec<String> = sheets.iter().map(|own| own.checks.to_string()).collect();
+            Some([name.clone(), words, checks.join("; ")])
         })
         .collect();
-    Listing::new("finish", ["finish", WHAT_IT_DOES], rows.len(), rows.into_iter())
+    Listing::new("finish", ["finish", WHAT_IT_DOES, "checked"], rows.len(), rows.into_iter())
 }
 
 /// The effect of finishes that need no definition.

@@ -193,6 +193,14 @@ macro_rules! ask {
 }
 
 impl Finish {
+    /// The sheets with measured scatter among it and its parts.
+    pub fn measured_sheets(&self) -> Vec<&MeasuredSheet> {
+        if let Self::Mixture(parts) = self {
+            return parts.iter().flat_map(|(_, part)| part.measured_sheets()).collect();
+        }
+        if let Self::MeasuredSheet { sheet, .. } = self { vec![sheet] } else { Vec::new() }
+    }
+
     /// The same finish as met by light from the other side, if it differs there.
     pub fn from_behind(&self) -> Option<Self> {
         if let Self::PrismFilm { film, face } = self {

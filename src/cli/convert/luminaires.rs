@@ -17,7 +17,7 @@ pub(super) fn converted(
     existing: Existing,
 ) -> Result<String> {
     let wrong = |error: LuminaireError| Error::Usage(format!("{}: {error}", from.display()));
-    let ReadLuminaire { luminaire, remarks } = read(from).map_err(wrong)?;
+    let ReadLuminaire { luminaire, remarks, .. } = read(from).map_err(wrong)?;
     let mut text = description(&luminaire);
     for remark in remarks {
         _ = writeln!(text, "remark: {remark}");

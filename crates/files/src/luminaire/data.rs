@@ -101,6 +101,8 @@ fn within(number: &str, [least, most]: [f64; 2]) -> Option<f64> {
 pub struct ReadLuminaire {
     /// The luminaire.
     pub luminaire: Luminaire,
+    /// Line of the first intensity, from 1.
+    pub table_line: usize,
     /// Sentences for the user, in the order of the file.
     pub remarks: Vec<String>,
 }
@@ -115,7 +117,7 @@ const MOST_OUTPUT: f64 = 1.02;
 
 impl ReadLuminaire {
     /// A luminaire with remarks, and further ones on its light.
-    pub(crate) fn new(luminaire: Luminaire, mut remarks: Vec<String>) -> Self {
+    pub(crate) fn new(luminaire: Luminaire, table_line: usize, mut remarks: Vec<String>) -> Self {
         let Luminaire { intensities, .. } = &luminaire;
         let ends = |all: &[f64]| [all[0], all[all.len() - 1]];
         let [low, high] = ends(intensities.angles_deg());
@@ -133,13 +135,13 @@ impl ReadLuminaire {
             ));
         }
         if intensities.flux() == 0.0 {
-            remarks.push("there is no light".to_owned());
+            remarks.push(format!("there is no light in the table from line {table_line} on"));
         }
         if let Some(ratio) = luminaire.light_output_ratio().filter(|ratio| *ratio > MOST_OUTPUT) {
             let percent = 100.0 * ratio;
             remarks.push(format!("the luminaire sends {percent:.0} % of the light of its lamps"));
         }
-        Self { luminaire, remarks }
+        Self { luminaire, table_line, remarks }
     }
 }
 

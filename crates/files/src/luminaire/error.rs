@@ -56,3 +56,14 @@ pub enum LuminaireError {
     #[error("no usable distribution: {0}")]
     NoDistribution(String),
 }
+
+impl LuminaireError {
+    /// The same with the line where the table of the file begins, from 1, if it has none.
+    pub(crate) fn at_table(self, format: LuminaireFormat, line: usize) -> Self {
+        if let Self::NoDistribution(_) = self {
+            Self::Violated { format, line, problem: self.to_string() }
+        } else {
+            self
+        }
+    }
+}

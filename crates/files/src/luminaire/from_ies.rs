@@ -10,6 +10,7 @@ use crate::luminaire::error::{
     LuminaireError, MAX_ANGLES, MOST_FACTOR, MOST_LAMPS, MOST_LUMENS, MOST_NODES, MOST_SIZE,
 };
 use crate::luminaire::fields::NumberReader;
+use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::front_table::{FrontTable, problem_of_angles};
 use crate::luminaire::generation::FileGeneration;
 use crate::luminaire::ies_edition::{Edition, SecondNumber};
@@ -58,7 +59,10 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
 
     let head = read_head(&mut numbers, edition, &mut remarks)?;
     let Head { lamps, power_w, .. } = head;
-    let intensities = read_intensities(&mut numbers, &head, &mut remarks)?;
+    let mut table_line = numbers.next_line();
+    let intensities = read_intensities(&mut numbers, &head, (&mut table_line, &mut remarks));
+    let intensities =
+        intensities.map_err(|error| error.at_table(LuminaireFormat::Ies, table_line))?;
     let lamps = lamp_flux(lamps, head.lumens_per_lamp, &mut remarks);
     let power_w = known_power(power_w, &mut remarks);
     let opening = opening(head.size_mm, &mut remarks);
@@ -76,18 +80,22 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         colour: LuminaireColour::default(),
         intensities,
     };
-    Ok(ReadLuminaire::new(luminaire, remarks))
+    Ok(ReadLuminaire::new(luminaire, table_line, remarks))
 }
 
-/// Reads the angles and the intensities, and gives them over C planes.
+/// Reads the angles and the intensities, and gives them over C planes; notes the line of the first intensity, and remarks.
 fn read_intensities(
     numbers: &mut WordReader<'_>,
     head: &Head,
-    remarks: &mut Vec<String>,
+    (table_line, remarks): (&mut usize, &mut Vec<String>),
 ) -> Result<Intensities, LuminaireError> {
     match head.photometric_type {
-        PhotometricType::A => type_a::over_c_planes(&read_front(numbers, head)?, remarks),
-        PhotometricType::B => type_b::over_c_planes(&read_front(numbers, head)?, remarks),
+        PhotometricType::A => {
+            type_a::over_c_planes(&read_front(numbers, head, table_line)?, remarks)
+        }
+        PhotometricType::B => {
+            type_b::over_c_planes(&read_front(numbers, head, table_line)?, remarks)
+        }
         PhotometricType::C => {
             let angles_deg = numbers.angles(head.angles, "a vertical angle")?;
             let planes_deg = numbers.angles(head.planes, "a horizontal angle")?;
@@ -99,7 +107,7 @@ fn read_intensities(
             }
             let (symmetry, planes_deg) =
                 symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
-            let mut candela = read_values(numbers, head)?;
+            let mut candela = read_values(numbers, head, table_line)?;
             remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, remarks);
             candela.truncate(planes_deg.len() * angles_deg.len());
             let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
@@ -110,19 +118,28 @@ fn read_intensities(
 }
 
 /// Reads the angles and the intensities of type A or B.
-fn read_front(numbers: &mut WordReader<'_>, head: &Head) -> Result<FrontTable, LuminaireError> {
+fn read_front(
+    numbers: &mut WordReader<'_>,
+    head: &Head,
+    table_line: &mut usize,
+) -> Result<FrontTable, LuminaireError> {
     let vertical_deg = numbers.angles(head.angles, "a vertical angle")?;
     let horizontal_deg = numbers.angles(head.planes, "a horizontal angle")?;
     if let Some(problem) = problem_of_angles(&horizontal_deg, &vertical_deg) {
         return Err(numbers.wrong(problem));
     }
-    let candela = read_values(numbers, head)?;
+    let candela = read_values(numbers, head, table_line)?;
     Ok(FrontTable::new(horizontal_deg, vertical_deg, candela))
 }
 
-/// Reads the intensities, which end the file, cd.
-fn read_values(numbers: &mut WordReader<'_>, head: &Head) -> Result<Vec<f64>, LuminaireError> {
+/// Reads the intensities, which end the file, cd, and notes the line of the first.
+fn read_values(
+    numbers: &mut WordReader<'_>,
+    head: &Head,
+    table_line: &mut usize,
+) -> Result<Vec<f64>, LuminaireError> {
     let &Head { angles, planes, factor, .. } = head;
+    *table_line = numbers.next_line();
     let mut candela = numbers.intensities(planes * angles)?;
     numbers.end([planes, angles])?;
     candela.iter_mut().for_each(|value| *value *= factor);

@@ -79,6 +79,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     if planes * angles > MOST_NODES {
         return Err(fields.wrong(format!("{planes} times {angles} angles are too many")));
     }
+    let table_line = fields.place + 1;
     for plane in planes_deg {
         let values = fields.intensities(angles)?;
         by_plane.push((plane, values.iter().map(|value| value * factor).collect()));
@@ -87,7 +88,8 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     by_plane.sort_by(|a, b| a.0.total_cmp(&b.0));
     let planes_deg = by_plane.iter().map(|(plane, _)| *plane).collect();
     let candela = by_plane.into_iter().flat_map(|(_, values)| values).collect();
-    let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+    let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)
+        .map_err(|error| error.at_table(LuminaireFormat::Ldt, table_line))?;
     remarks.extend(pole_remarks(&intensities));
     let lamps = match whole(count) {
         Some(count) if count < 0 => LampFlux::Absolute,
@@ -105,7 +107,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     }
     let generation = FileGeneration::Undefined;
     let luminaire = Luminaire { texts, generation, lamps, power_w, opening, colour, intensities };
-    Ok(ReadLuminaire::new(luminaire, remarks))
+    Ok(ReadLuminaire::new(luminaire, table_line, remarks))
 }
 
 /// Remarks where angles do not have the step that the file states; 0 states none.

@@ -3,10 +3,11 @@
 use crate::luminaire::error::LuminaireError;
 use crate::luminaire::fields::NumberReader;
 use crate::luminaire::format::LuminaireFormat;
+use std::iter::Peekable;
 
 /// Reads the numbers of some lines, one after the other.
 pub(crate) struct WordReader<'t> {
-    words: Box<dyn Iterator<Item = (usize, &'t str)> + 't>,
+    words: Peekable<Box<dyn Iterator<Item = (usize, &'t str)> + 't>>,
     /// Line of the last number, from 1.
     line: usize,
 }
@@ -19,7 +20,13 @@ impl<'t> WordReader<'t> {
                 |letter: char| letter.is_whitespace() || letter == ',' || letter == '\u{1a}';
             text.split(is_gap).filter(|word| !word.is_empty()).map(move |word| (line + 1, word))
         });
-        Self { words: Box::new(words), line: first }
+        let words: Box<dyn Iterator<Item = (usize, &'t str)> + 't> = Box::new(words);
+        Self { words: words.peekable(), line: first }
+    }
+
+    /// Line of the next number, from 1; that of the last one at the end.
+    pub(crate) fn next_line(&mut self) -> usize {
+        self.words.peek().map_or(self.line, |(line, _)| *line)
     }
 
     pub(crate) fn end(&mut self, [planes, angles]: [usize; 2]) -> Result<(), LuminaireError> {

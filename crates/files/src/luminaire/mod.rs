@@ -107,8 +107,8 @@ pub fn read(path: &Path) -> Result<ReadLuminaire, LuminaireError> {
 ///
 /// # Errors
 ///
-/// [`LuminaireError::Violated`] with the line if they violate the format, [`LuminaireError::NoDistribution`] if their angles or
-/// values make no distribution, [`LuminaireError::WrittenOnly`] for a format that is not read.
+/// [`LuminaireError::Violated`] with the line if they violate the format, or with the line of the first intensity if their angles
+/// or values make no distribution; [`LuminaireError::WrittenOnly`] for a format that is not read.
 pub fn parse(bytes: &[u8], format: LuminaireFormat) -> Result<ReadLuminaire, LuminaireError> {
     let text = decoded(bytes);
     match format {

@@ -27,11 +27,15 @@ impl Context<'_> {
         let frame = self.place(spec.at.as_ref(), key, Facing::Toward);
         let luminaire = self.read_luminaire(spec, &key.field("file"));
         self.may_build(key)?;
-        let Luminaire { opening, intensities, .. } = luminaire?;
+        let ReadLuminaire { luminaire, table_line, .. } = luminaire?;
+        let Luminaire { opening, intensities, .. } = luminaire;
         let (emitter, highest) = self.luminous_extent(spec, &opening, frame?, key);
         self.check_upward_light(&intensities, highest, key)?;
         let Some(table) = table(&intensities, highest) else {
-            let message = format!("`{}` emits no light", spec.file);
+            let message = format!(
+                "`{}`: line {table_line}: the table from here on emits no light",
+                spec.file
+            );
             return self.refuse(&key.field("file"), message, "give a file with intensities");
         };
         let flux = match spec.flux_lm {
@@ -56,16 +60,16 @@ impl Context<'_> {
     }
 
     /// Reads the file; problems and remarks are noted at its key.
-    fn read_luminaire(&mut self, spec: &LuminaireSpec, key: &Key) -> Option<Luminaire> {
+    fn read_luminaire(&mut self, spec: &LuminaireSpec, key: &Key) -> Option<ReadLuminaire> {
         self.may_build(key)?;
         let path = self.places.folder(key).join(&spec.file);
         match luminaire::read(&path) {
-            Ok(ReadLuminaire { luminaire, remarks }) => {
-                for remark in remarks {
+            Ok(read) => {
+                for remark in &read.remarks {
                     self.problems.warning(key, format!("`{}`: {remark}", spec.file));
                 }
-                self.add_to_hash(&luminaire);
-                Some(luminaire)
+                self.add_to_hash(&read.luminaire);
+                Some(read)
             }
             Err(error) => {
                 self.problems.error(key, format!("`{}`: {error}", spec.file));

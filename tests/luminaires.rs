@@ -4,12 +4,14 @@
 
 mod traced;
 
+use glam::DVec3;
 use lumiduct_base::error::DiagnosticKind;
 use lumiduct_core::measure::Measures;
 use lumiduct_core::plan::Request;
 use lumiduct_files::luminaire::{LampFlux, LuminaireFormat};
 use lumiduct_input::{self as input, Job, Settings};
 use lumiduct_report::{LuminaireOrigin, MeasuredLuminaire};
+use std::f64::consts::{PI, TAU};
 
 /// A lamp whose light goes up, too: 10 cd down, 5 cd to the sides and 1 cd up, with an opening.
 const UPWARD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bad_input/luminaires/upward.ies");
@@ -166,4 +168,51 @@ fn a_file_comes_back_from_source_and_goniometer_within_its_errors() {
         assert_eq!(count, 2);
         assert!((flux_lm / measures.source_flux - 1.0).abs() < 1e-6, "{flux_lm}");
     }
+}
+
+/// Illuminance times distance squared, cd, at an angle to the axis of a Lambertian disk with this luminance, cd/mm², on a
+/// sphere about its middle; sizes in mm.
+fn disk_on_sphere(luminance: f64, disk: f64, sphere: f64, gamma: f64) -> f64 {
+    let steps = 400;
+    let place = DVec3::new(gamma.sin(), 0.0, gamma.cos());
+    let part = |n: u32| (f64::from(n) + 0.5) / f64::from(steps);
+    let parts = (0..steps * steps).map(|n| {
+        let (radius, around) = (disk * part(n / steps).sqrt(), TAU * part(n % steps));
+        let to = sphere * place - radius * DVec3::new(around.cos(), around.sin(), 0.0);
+        to.z.max(0.0) * to.dot(place) / to.length_squared().powi(2)
+    });
+    let area = PI * disk * disk / f64::from(steps * steps);
+    luminance * area * sphere * sphere * parts.sum::<f64>()
+}
+
+#[test]
+fn files_of_a_sphere_have_illuminance_times_distance_squared() {
+    let (disk, sphere, flux) = (100.0, 250.0, 1000.0);
+    let text = format!(
+        "[sources.lamp.disk]\nradius_mm = {disk}\nflux_lm = {flux}\n[sensors.near]\n\
+         goniometer = {{ c_step_deg = 360, gamma_step_deg = 2.5, radius_mm = {sphere} }}\nluminaire = {{}}\n"
+    );
+    let estimator = Some(Request::Forward);
+    let job =
+        traced::load(&text, &Settings { paths: Some(1_000_000), estimator, ..Settings::default() });
+    let measures = traced::measures(&job);
+    let origin = LuminaireOrigin { title: "Disk", hash: "1", date: None, version: "0" };
+    let measured = MeasuredLuminaire::new(&job.exports.luminaires[0], &measures, &origin).unwrap();
+    assert_eq!(measured.distance_mm, Some(sphere));
+    let table = &measured.luminaire.intensities;
+    assert!((table.flux() / flux - 1.0).abs() < 1e-6, "{}", table.flux());
+    let luminance = flux / (PI * PI * disk * disk);
+    let far = flux / PI;
+    for (place, gamma) in table.angles_deg().iter().enumerate().filter(|(_, gamma)| **gamma < 80.0)
+    {
+        let expected = disk_on_sphere(luminance, disk, sphere, gamma.to_radians());
+        let (found, error) = (table.plane(0)[place], measured.std_errors[[0, place]]);
+        assert!(
+            (found - expected).abs() < 4.5 * error + 3e-3 * far,
+            "{gamma}: {found} {expected} {error}"
+        );
+    }
+    // On the axis it is that of the far field, over 1 + (r/d)².
+    let axis = table.plane(0)[0] / (far / 1.16);
+    assert!((axis - 1.0).abs() < 0.03, "{axis}");
 }

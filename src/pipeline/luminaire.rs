@@ -51,7 +51,7 @@ pub(super) struct LuminaireFile {
 
 impl LuminaireFile {
     /// Checks, before any work is done, that the scene has one luminaire and that the file can be written: that of the only
-    /// sensor with a key `luminaire` or, without such a key, that of the only goniometer in the far field.
+    /// sensor with a key `luminaire` or, without such a key, that of the only goniometer or of the only one in the far field.
     pub(super) fn open(job: &Job, path: &Path, existing: Existing) -> Result<Self> {
         let refuse = |why: String| Error::Usage(format!("--ies {}: {why}", path.display()));
         let format = LuminaireFormat::of(path).map_err(|error| refuse(error.to_string()))?;
@@ -83,7 +83,10 @@ impl LuminaireFile {
             _ => {
                 let export = LuminaireExport { formats: vec![format], ..export.clone() };
                 let found = luminaire(job, &export, &report.measures)?;
-                (found.file(format), found.remarks)
+                let remarks = export.remarks_on_distance(&job.scene).into_iter();
+                let remarks =
+                    remarks.map(|remark| format!("`sensors.{}`: {remark}", export.sensor));
+                (found.file(format), remarks.chain(found.remarks).collect())
             }
         };
         write_whole(&self.path, &file.bytes, self.existing)?;
@@ -92,23 +95,27 @@ impl LuminaireFile {
     }
 }
 
-/// The export of the only goniometer in the far field, or why there is none.
+/// The export of the only goniometer, or of the only one in the far field; or why there is none.
 fn finest_export(job: &Job) -> std::result::Result<LuminaireExport, String> {
     if job.scene.unit == FluxUnit::Watt {
         return Err(
             "luminous intensities need sources in lm, and those of the scene are in W".to_owned()
         );
     }
-    let far = job.scene.sensors.iter().filter_map(|sensor| match &sensor.kind {
-        SensorKind::Goniometer(goniometer @ Goniometer { radius: None, .. }) => {
-            Some((&sensor.name, goniometer))
-        }
-        SensorKind::Goniometer(_) | SensorKind::Surface(_) => None,
-    });
-    let (name, goniometer) = match far.collect::<Vec<_>>()[..] {
-        [only] => only,
-        [] => return Err("the scene has no goniometer in the far field".to_owned()),
-        _ => {
+    let all: Vec<(&str, &Goniometer)> = job
+        .scene
+        .sensors
+        .iter()
+        .filter_map(|sensor| match &sensor.kind {
+            SensorKind::Goniometer(goniometer) => Some((sensor.name.as_str(), goniometer)),
+            SensorKind::Surface(_) => None,
+        })
+        .collect();
+    let far = all.iter().copied().filter(|(_, goniometer)| goniometer.radius.is_none());
+    let (name, goniometer) = match (&all[..], &far.collect::<Vec<_>>()[..]) {
+        ([only], _) | (_, [only]) => *only,
+        ([], _) => return Err("the scene has no goniometer".to_owned()),
+        (_, _) => {
             return Err("the scene has several goniometers; give one of them the key `luminaire`"
                 .to_owned());
         }

@@ -135,10 +135,47 @@ fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
         assert!(text.contains("1 1.00010 2\r\n"), "computed, not measured");
     }
     assert!(latest.good("convert lamp.ies").contains("intensities: computed"));
-    let near = with(", radius_mm = 99 }");
-    assert!(near.bad(2, "run rod.toml --ies a.ies").contains("no goniometer in the far field"));
     let two = Place::with("[sensors.near]\ngoniometer = {}\n");
     assert!(two.bad(2, "run rod.toml --ies a.ies").contains("several goniometers"));
+}
+
+/// The scene with a sphere for its goniometer, and more keys of the sensor.
+fn with_sphere(radius_mm: u32, keys: &str) -> Place {
+    let place = Place::new();
+    let sphere = format!("gamma_step_deg = 10, radius_mm = {radius_mm} }}{keys}");
+    let text = SCENE.replace("gamma_step_deg = 10 }", &sphere);
+    fs::write(place.path("rod.toml"), text).unwrap();
+    place
+}
+
+#[test]
+fn a_luminaire_file_of_a_sphere_states_its_distance() {
+    let place = with_sphere(99, "");
+    let said = place.good("run rod.toml --ies a.ies");
+    let remark = "note: `sensors.far`: its files have the intensities at a distance of 99 mm;";
+    assert!(said.contains(remark), "{said}");
+    assert!(!said.contains("outside of its sphere"), "{said}");
+    let text = fs::read_to_string(place.path("a.ies")).unwrap();
+    assert!(text.contains("sensor far, at 99 mm\r\n"), "{text}");
+    assert!(text.contains("[OTHER] intensities: illuminance at a distance of 99 mm"), "{text}");
+
+    let place = with_sphere(99, ", luminaire = { opening = { disk = { radius_mm = 2 } } }");
+    let said = errors(&place.run("check rod.toml"));
+    for words in ["24.75 times the largest dimension of the opening", "at least 5 times that"] {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    place.good("run rod.toml -q");
+    let page = fs::read_to_string(place.path("reports/rod/report.md")).unwrap();
+    assert_eq!(page.matches("at least 5 times that").count(), 1, "{page}");
+    assert!(page.contains("An intensity is the illuminance at a distance of 99 mm"), "{page}");
+    let ldt = fs::read_to_string(place.path("reports/rod/far.ldt")).unwrap();
+    assert!(ldt.contains("sensor far, at 99 mm\r\n"), "{ldt}");
+
+    let said = errors(&with_sphere(3, ", luminaire = {}").run("check rod.toml"));
+    assert!(said.contains("parts of the scene lie outside of its sphere"), "{said}");
+    // Of several goniometers, the only one in the far field is written.
+    let both = Place::with("[sensors.near]\ngoniometer = { radius_mm = 99 }\n");
+    assert!(!both.good("run rod.toml --ies a.ies").contains("at a distance of"));
 }
 
 #[test]

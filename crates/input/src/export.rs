@@ -1,8 +1,13 @@
 //! Files that sensors are to write.
 
-use lumiduct_core::scene::{Goniometer, SensorId};
+use lumiduct_base::number::format_value;
+use lumiduct_core::scene::{Goniometer, Scene, SensorId, SensorKind};
 use lumiduct_files::luminaire::{LuminaireFormat, Opening, TableLayout};
 use lumiduct_files::rays::RayFormat;
+
+/// Distance from which the inverse-square law holds within 1 % for uniform luminance, in largest dimensions of the source
+/// (ANSI/IES LS-1, definition 9.1.1, inverse-square law).
+const LEAST_DISTANCE: f64 = 5.0;
 
 /// The files that the sensors of a scene are to write.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -57,4 +62,44 @@ impl LuminaireExport {
             texts: Vec::new(),
         }
     }
+
+    /// Sentences for the user on files from a sphere of finite radius in its scene; none in the far field.
+    pub fn remarks_on_distance(&self, scene: &Scene) -> Vec<String> {
+        let own = scene.sensors.iter().find(|sensor| sensor.name == self.sensor);
+        let goniometer = own.and_then(|sensor| match &sensor.kind {
+            SensorKind::Goniometer(goniometer) => Some(goniometer),
+            SensorKind::Surface(_) => None,
+        });
+        let Some((goniometer, radius)) = goniometer.and_then(|own| Some((own, own.radius?))) else {
+            return Vec::new();
+        };
+        let (beside, size) = match self.opening.map(|opening| largest_dimension(&opening)) {
+            Some(size) => {
+                let ratio = format_value(radius / size);
+                (format!(", {ratio} times the largest dimension of the opening"), "that dimension")
+            }
+            None => (String::new(), "the largest dimension of the luminous opening"),
+        };
+        let distance = format_value(radius);
+        let mut remarks = vec![format!(
+            "its files have the intensities at a distance of {distance} mm{beside}; they are those of the far field only where \
+                the distance is at least {LEAST_DISTANCE} times {size}, and more for narrow beams"
+        )];
+        if !goniometer.encloses(scene) {
+            remarks.push(
+                "parts of the scene lie outside of its sphere: light that starts there is missing in the intensities, and light \
+                    that returns into the sphere counts again when it leaves"
+                    .to_owned(),
+            );
+        }
+        remarks
+    }
+}
+
+/// Diameter or diagonal of an opening, mm.
+fn largest_dimension(opening: &Opening) -> f64 {
+    let &Opening { is_round, along_c0_mm, along_c90_mm, height_mm } = opening;
+    let across =
+        if is_round { along_c0_mm.max(along_c90_mm) } else { along_c0_mm.hypot(along_c90_mm) };
+    across.hypot(height_mm)
 }

@@ -29,6 +29,8 @@ pub struct MeasuredLuminaire {
     pub formats: Vec<LuminaireFormat>,
     /// The luminaire.
     pub luminaire: Luminaire,
+    /// Distance at which its intensities were measured, mm; `None` for the far field.
+    pub distance_mm: Option<f64>,
     /// Standard errors of its intensities, planes by angles, cd.
     pub std_errors: Array2<f64>,
     /// Sentences for the user.
@@ -78,7 +80,8 @@ impl MeasuredLuminaire {
         let mut remarks = remarks(export, readings, &fitted, asymmetry);
         let FittedIntensities { intensities, std_errors, .. } = fitted;
         let colour = colour(export, measures);
-        let texts = texts(export, origin, &std_errors);
+        let distance_mm = readings.radius_mm;
+        let texts = texts(export, origin, distance_mm, &std_errors);
         let opening = export.opening.unwrap_or_default();
         let luminaire = Luminaire {
             texts,
@@ -90,7 +93,8 @@ impl MeasuredLuminaire {
             intensities,
         };
         let (sensor, formats) = (export.sensor.clone(), export.formats.clone());
-        let mut found = Self { sensor, formats, luminaire, std_errors, remarks: Vec::new() };
+        let mut found =
+            Self { sensor, formats, luminaire, distance_mm, std_errors, remarks: Vec::new() };
         remarks.extend(export.formats.iter().flat_map(|format| found.left_out(*format)));
         found.remarks = remarks;
         Ok(found)
@@ -187,17 +191,24 @@ fn colour(export: &LuminaireExport, measures: &Measures) -> LuminaireColour {
 fn texts(
     export: &LuminaireExport,
     origin: &LuminaireOrigin<'_>,
+    distance_mm: Option<f64>,
     std_errors: &Array2<f64>,
 ) -> Vec<(String, String)> {
+    let distance = distance_mm.map(|distance| format!("{} mm", format_value(distance)));
+    let beside = distance.as_ref().map_or(String::new(), |distance| format!(", at {distance}"));
     let error = std_errors.iter().copied().fold(0.0, f64::max);
     let error = error.is_finite().then(|| format_value(error));
     let LuminaireOrigin { title, hash, date, version } = *origin;
+    let near = distance.map(|distance| {
+        format!("intensities: illuminance at a distance of {distance} times distance squared")
+    });
     let own = [
-        ("TEST", Some(format!("scene {hash}, sensor {}", export.sensor))),
+        ("TEST", Some(format!("scene {hash}, sensor {}{beside}", export.sensor))),
         ("TESTLAB", Some(format!("computed by Lumiduct {version}, not measured"))),
         ("ISSUEDATE", date.map(str::to_owned)),
         ("LUMINAIRE", Some(title.to_owned())),
         ("OTHER", error.map(|error| format!("standard error of an intensity: at most {error} cd"))),
+        ("OTHER", near),
     ];
     // OTHER may occur more than once.
     let is_given =

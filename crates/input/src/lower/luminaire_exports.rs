@@ -1,14 +1,25 @@
 //! Luminaire files that goniometers are to write.
 
-use crate::export::LuminaireExport;
+use crate::export::{Exports, LuminaireExport};
 use crate::keys::Key;
 use crate::lower::context::Context;
+use crate::problems::Problems;
 use crate::spec::luminaire::{ExportFormat, ExportPhotometry, ExportSymmetry, LuminaireExportSpec};
 use crate::spec::sensor::SensorSpec;
 use crate::spec::sweep::AreaSpec;
 use lumiduct_base::units::FluxUnit;
-use lumiduct_core::scene::Goniometer;
+use lumiduct_core::scene::{Goniometer, Scene};
 use lumiduct_files::luminaire::{LuminaireFormat, Opening, PlaneSymmetry, TableLayout, is_keyword};
+
+/// Notes luminaire files from spheres of finite radius.
+pub(super) fn note_distances(scene: &Scene, exports: &Exports, problems: &mut Problems) {
+    for export in &exports.luminaires {
+        let key = Key::of(&["sensors", &export.sensor, "luminaire"]);
+        for remark in export.remarks_on_distance(scene) {
+            problems.warning(&key, remark);
+        }
+    }
+}
 
 impl Context<'_> {
     /// Notes the files that a sensor is to write.
@@ -24,10 +35,6 @@ impl Context<'_> {
         if spec.goniometer.is_none() {
             let message = "is for a `goniometer` only";
             return self.refuse(&key, message, "remove it, or add a sensor with a `goniometer`");
-        }
-        if spec.goniometer.is_some_and(|sphere| sphere.radius_mm.is_some()) {
-            let message = "needs the far field: a luminaire file has no distance";
-            return self.refuse(&key, message, "remove `radius_mm` of the goniometer");
         }
         if self.builder.scene().unit == FluxUnit::Watt {
             let message =

@@ -100,6 +100,7 @@ pub(crate) fn lower(
     consistency::check_open_faces(spec, &scene, problems);
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
+    luminaire_exports::note_distances(&scene, &exports, problems);
     spectra::note_tables(spec, &scene, problems);
     spectra::note_library(spec, &scene, problems);
     let checks = spec.check.clone();

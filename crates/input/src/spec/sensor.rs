@@ -50,7 +50,7 @@ pub struct SensorSpec {
     pub passage: PassageSpec,
     /// The port, as `NAME.FACE`, whose entering flux is the reference for `transmission`.
     pub entering: Option<String>,
-    /// Luminaire files to write from what the sensor measures. Only for a `goniometer` in the far field.
+    /// Luminaire files to write from what the sensor measures. Only for a `goniometer`.
     pub luminaire: Option<LuminaireExportSpec>,
     /// Ray files to write of the light that the sensor counts. Only for a `plane` or a `goniometer`.
     pub rays: Option<RayExportSpec>,

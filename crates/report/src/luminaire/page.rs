@@ -71,6 +71,12 @@ fn summary(found: &MeasuredLuminaire) -> String {
         format_value(flux),
         format_value(intensities.peak()),
     );
+    if let Some(distance) = found.distance_mm {
+        let distance = format_value(distance);
+        text += &format!(
+            " An intensity is the illuminance at a distance of {distance} mm times distance squared."
+        );
+    }
     text += &match lamps {
         LampFlux::Absolute => " The photometry is absolute.".to_owned(),
         LampFlux::Relative { count, flux_lm } => {
@@ -264,6 +270,7 @@ mod tests {
                 colour: LuminaireColour::default(),
                 intensities,
             },
+            distance_mm: None,
             std_errors: Array2::zeros((1, 181)),
             remarks: Vec::new(),
         }

@@ -66,6 +66,14 @@ fn a_luminaire_from_a_file() {
 }
 
 #[test]
+fn a_luminaire_that_shines_to_all_sides() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/luminaires/box.ies");
+    let lamp =
+        format!("[sources.lamp.luminaire]\nfile = {file:?}\nat = {{ position_mm = [0, 0, -1.2] }}");
+    all_agree("box", &rod(&lamp));
+}
+
+#[test]
 fn sources_on_faces() {
     all_agree_in_narrow_windows(
         "disk in optical contact",

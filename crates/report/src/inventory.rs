@@ -330,10 +330,9 @@ fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
 
 /// Etendue G = n² A Ω (projected) of a source that has an area, mm² sr.
 fn etendue(scene: &Scene, source: &Source) -> Option<f64> {
-    let area = source.emitter.area()?;
-    let projected = source.emission.projected_extent();
+    let extent = source.projected_extent()?;
     let index = scene.media[MediumId::index(scene.surroundings)].index(REFERENCE_WAVELENGTH);
-    Some(index * index * area * projected)
+    Some(index * index * extent)
 }
 
 fn sensors(scene: &Scene, outline: &Outline) -> Listing {

@@ -58,6 +58,7 @@ pub use source::emission::Emission;
 pub use source::fitted::{FitQuality, FittedLight, NoFit};
 pub use source::light_group::{LightGroup, LightGroups};
 pub use source::measured::MeasuredEmission;
+pub use source::opening::LuminousOpening;
 pub use source::rays::{EmittedRay, RaySet};
 pub use source::sky::{EmitterKind, Sky};
 pub use source::{EmitSide, Emitted, Emitter, Source, StartSolids, SunAngles};

@@ -304,7 +304,7 @@ fn opening([width, length, height]: [f64; 3], remarks: &mut Vec<String>) -> Open
     let is_round = width < 0.0 && (length < 0.0 || is_flat || length == 0.0);
     if !is_flat || (length < 0.0 && width >= 0.0) {
         let shape = "is a sphere, a cylinder that lies or a disk that stands";
-        let taken = "its light is taken to start on a horizontal area of its width and length";
+        let taken = "its light is taken to start on an upright cylinder or box of its sizes";
         remarks.push(format!("the opening {shape}; {taken}"));
     }
     let [width, length] = [width.abs(), length.abs()];

@@ -5,15 +5,17 @@ use crate::lower::context::Context;
 use crate::lower::place::Facing;
 use crate::lower::sources::PlacedSource;
 use crate::spec::luminaire::{LuminaireExtent, LuminaireSpec};
+use glam::DVec3;
 use lumiduct_base::math::Frame;
-use lumiduct_base::number::{format_exact, format_percent};
+use lumiduct_base::number::format_exact;
 use lumiduct_core::scene::shape::{Flat, Region, Shape};
-use lumiduct_core::scene::{Emission, EmitSide, Emitter, MeasuredEmission};
+use lumiduct_core::scene::{Emission, EmitSide, Emitter, LuminousOpening, MeasuredEmission};
 use lumiduct_files::luminaire::{self, Intensities, Luminaire, Opening, ReadLuminaire};
 use std::sync::Arc;
 
-/// Angle γ up to which a flat opening emits, deg.
+/// Angles γ up to which a flat opening emits to one side and to both, deg.
 const HORIZON: f64 = 90.0;
+const ZENITH: f64 = 180.0;
 /// Share of the light above the horizon that is no more than rounding, 1.
 const NO_LIGHT: f64 = 1e-6;
 
@@ -28,10 +30,9 @@ impl Context<'_> {
         let luminaire = self.read_luminaire(spec, &key.field("file"));
         self.may_build(key)?;
         let ReadLuminaire { luminaire, table_line, .. } = luminaire?;
-        let Luminaire { opening, intensities, .. } = luminaire;
-        let (emitter, highest) = self.luminous_extent(spec, &opening, frame?, key);
-        self.check_upward_light(&intensities, highest, key)?;
-        let Some(table) = table(&intensities, highest) else {
+        let (emitter, highest) = self.luminous_extent(spec, &luminaire, frame?, key);
+        let intensities = &luminaire.intensities;
+        let Some(table) = table(intensities, highest) else {
             let message = format!(
                 "`{}`: line {table_line}: the table from here on emits no light",
                 spec.file
@@ -96,52 +97,51 @@ impl Context<'_> {
     fn luminous_extent(
         &mut self,
         spec: &LuminaireSpec,
-        opening: &Opening,
+        luminaire: &Luminaire,
         frame: Frame,
         key: &Key,
     ) -> (Emitter, f64) {
-        let &Opening { is_round, along_c0_mm, along_c90_mm, height_mm } = opening;
-        let has_area = along_c0_mm > 0.0 && along_c90_mm > 0.0;
-        let is_upright = !has_area && (along_c0_mm > 0.0 || along_c90_mm > 0.0);
-        if spec.extent == LuminaireExtent::Opening && is_upright {
-            let message = "its opening is a line or stands upright; its light is taken to start at the middle";
+        let &Opening { is_round, along_c0_mm, along_c90_mm, height_mm } = &luminaire.opening;
+        let sizes = [along_c0_mm, along_c90_mm, height_mm];
+        let extended = sizes.iter().filter(|size| **size > 0.0).count();
+        if spec.extent == LuminaireExtent::Opening && extended == 1 {
+            let message = "its opening is a line; its light is taken to start at the middle";
             self.problems.warning(&key.field("file"), message).hint("give extent = \"point\"");
         }
-        if spec.extent == LuminaireExtent::Point || !has_area {
-            return (Emitter::Point(frame), 2.0 * HORIZON);
+        if spec.extent == LuminaireExtent::Point || extended < 2 {
+            return (Emitter::Point(frame), ZENITH);
         }
-        if height_mm > 0.0 {
+        let [half_x, half_y] = [along_c0_mm, along_c90_mm].map(|size| 0.5 * size);
+        let round = match half_x == half_y {
+            true => Region::Annulus { inner: 0.0, outer: half_x },
+            false => Region::Ellipse { half_x, half_y },
+        };
+        let is_ellipse = is_round && half_x != half_y;
+        if is_ellipse && height_mm > 0.0 {
             let height = format_exact(height_mm);
-            let message = format!("its opening is {height} mm high and is taken as flat");
+            let message =
+                format!("its opening is an ellipse, {height} mm high, and is taken as flat");
             self.problems.warning(&key.field("file"), message);
         }
-        let (half_x, half_y) = (0.5 * along_c0_mm, 0.5 * along_c90_mm);
-        let region = match is_round {
-            true if half_x == half_y => Region::Annulus { inner: 0.0, outer: half_x },
-            true => Region::Ellipse { half_x, half_y },
-            false => Region::Rectangle { half_x, half_y },
-        };
-        let shape = Shape::Flat(Flat::new(frame, region));
-        (Emitter::surface(vec![shape], EmitSide::Front, Some(frame)), HORIZON)
-    }
-
-    /// Refuses light that the extent cannot emit.
-    fn check_upward_light(
-        &mut self,
-        intensities: &Intensities,
-        highest: f64,
-        key: &Key,
-    ) -> Option<()> {
-        let lost = intensities.flux_between(highest, 2.0 * HORIZON) / intensities.flux();
-        if lost > NO_LIGHT {
-            let share = format_percent(lost);
-            let message = format!(
-                "the luminaire sends {share} of its light above 90 deg, and its opening is flat"
-            );
-            return self.refuse(&key.field("file"), message, "give extent = \"point\"");
+        let is_flat = height_mm == 0.0 || is_ellipse;
+        if is_flat && upward_share(&luminaire.intensities) <= NO_LIGHT {
+            let region = if is_round { round } else { Region::Rectangle { half_x, half_y } };
+            let shape = Shape::Flat(Flat::new(frame, region));
+            return (Emitter::surface(vec![shape], EmitSide::Front, Some(frame)), HORIZON);
         }
-        Some(())
+        let opening = match is_round {
+            true if is_flat => LuminousOpening::two_sided(frame, round),
+            true => LuminousOpening::cylinder(frame, half_x, height_mm),
+            false => LuminousOpening::cuboid(frame, DVec3::from_array(sizes)),
+        };
+        (Emitter::Opening(opening), ZENITH)
     }
+}
+
+/// Share of the light above the horizon, 1; 0 in darkness.
+fn upward_share(intensities: &Intensities) -> f64 {
+    let upward = intensities.flux_between(HORIZON, ZENITH);
+    if upward > 0.0 { upward / intensities.flux() } else { 0.0 }
 }
 
 /// The distribution up to an angle γ in degrees; `None` without light.

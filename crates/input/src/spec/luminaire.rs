@@ -38,7 +38,8 @@ pub struct LuminaireSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LuminaireExtent {
-    /// Evenly over the luminous opening in the file, which is taken as flat, with the same distribution everywhere.
+    /// On the luminous opening in the file: evenly over a flat one that shines to one side, with the same distribution everywhere; of
+    /// one that shines to both sides, of a box or of an upright cylinder, evenly over what is seen from each direction.
     #[default]
     Opening,
     /// At its middle.

@@ -151,6 +151,19 @@ impl Emission {
         }
     }
 
+    /// The largest angle to the axis of a measured distribution at which there may be light, rad; π for all other laws.
+    pub(crate) fn widest(&self) -> f64 {
+        match self {
+            Self::Measured(own) => own.widest(),
+            Self::Lambertian
+            | Self::CosinePower(_)
+            | Self::Cone { .. }
+            | Self::Collimated { .. }
+            | Self::Isotropic
+            | Self::Sky(_) => PI,
+        }
+    }
+
     /// Projected solid angle of all directions to which a surface may emit, sr, whatever the distribution over them.
     pub fn projected_extent(&self) -> f64 {
         match self {

@@ -4,13 +4,14 @@ pub(crate) mod emission;
 pub(crate) mod fitted;
 pub(crate) mod light_group;
 pub(crate) mod measured;
+pub(crate) mod opening;
 pub(crate) mod radiance;
 pub(crate) mod rays;
 pub(crate) mod sky;
 
 use crate::colour::SpectralDraw;
 use crate::scene::shape::{Flat, Region, Shape, Sphere};
-use crate::scene::{Emission, FittedLight, Inside, PrimId, Ray, RaySet, SolidId};
+use crate::scene::{Emission, FittedLight, Inside, LuminousOpening, PrimId, Ray, RaySet, SolidId};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use std::sync::Arc;
@@ -81,6 +82,8 @@ pub enum Emitter {
         /// Radius of the sphere that all light would pass through, mm.
         reach: f64,
     },
+    /// An opening that emits to several sides; the emission is that of the whole opening, in its frame.
+    Opening(LuminousOpening),
     /// The inside of a solid.
     Volume {
         /// The solid.
@@ -202,6 +205,7 @@ impl Emitter {
             | Self::Rays { .. }
             | Self::Fitted { .. } => None,
             Self::Surface { shapes, .. } => shapes.last().map(|(_, area)| *area),
+            Self::Opening(opening) => Some(opening.area()),
         }
     }
 
@@ -211,6 +215,7 @@ impl Emitter {
             Self::Point(frame) | Self::Rays { frame, .. } => Some(frame),
             Self::Line { .. }
             | Self::Surface { .. }
+            | Self::Opening(_)
             | Self::Fitted { .. }
             | Self::Volume { .. }
             | Self::Far { .. } => None,
@@ -226,6 +231,7 @@ impl Emitter {
             }
             Self::Point(_)
             | Self::Surface { .. }
+            | Self::Opening(_)
             | Self::Volume { .. }
             | Self::Far { .. }
             | Self::Rays { .. }
@@ -238,6 +244,7 @@ impl Emitter {
     pub fn shapes(&self) -> &[(Shape, f64)] {
         match self {
             Self::Surface { shapes, .. } => shapes,
+            Self::Opening(opening) => opening.shapes(),
             Self::Fitted { shapes, .. } => shapes,
             Self::Point(_)
             | Self::Line { .. }
@@ -247,12 +254,13 @@ impl Emitter {
         }
     }
 
-    /// The direction along which a point, a flat surface or the axis of rays shines; `None` for all others.
+    /// The direction along which a point, a flat surface, or the axis of rays or of an opening shines; `None` for all others.
     pub fn axis(&self) -> Option<DVec3> {
         match self {
             Self::Point(frame) | Self::Rays { frame, .. } | Self::Fitted { frame, .. } => {
                 Some(frame.z)
             }
+            Self::Opening(opening) => Some(opening.frame().z),
             Self::Surface { shapes, side, .. } => {
                 let [(shape, _)] = shapes.as_slice() else { return None };
                 let normals =
@@ -276,6 +284,7 @@ impl Emitter {
             Self::Point(_)
             | Self::Line { .. }
             | Self::Surface { .. }
+            | Self::Opening(_)
             | Self::Volume { .. }
             | Self::Far { .. } => None,
         }
@@ -288,6 +297,7 @@ impl Emitter {
             Self::Point(_)
             | Self::Line { .. }
             | Self::Surface { .. }
+            | Self::Opening(_)
             | Self::Volume { .. }
             | Self::Rays { .. }
             | Self::Fitted { .. } => false,
@@ -300,6 +310,7 @@ impl Emitter {
             Self::Point(_)
             | Self::Line { .. }
             | Self::Surface { .. }
+            | Self::Opening(_)
             | Self::Rays { .. }
             | Self::Fitted { .. } => true,
             Self::Volume { .. } | Self::Far { .. } => false,
@@ -314,8 +325,9 @@ impl Emitter {
                 frame.origin - 0.5 * length * frame.z,
                 frame.origin + 0.5 * length * frame.z,
             ]),
-            Self::Surface { shapes, .. } => {
-                shapes.iter().fold(Aabb::EMPTY, |bounds, (shape, _)| bounds.union(shape.bounds()))
+            Self::Surface { .. } | Self::Opening(_) => {
+                let shapes = self.shapes().iter();
+                shapes.fold(Aabb::EMPTY, |bounds, (shape, _)| bounds.union(shape.bounds()))
             }
             Self::Fitted { shapes: [(shape, _)], .. } => shape.bounds(),
             Self::Volume { bounds, .. } | Self::Rays { bounds, .. } => *bounds,

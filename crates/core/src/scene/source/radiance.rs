@@ -24,6 +24,14 @@ impl Source {
                 let density = self.emission.density(EmitterKind::Surface, local).unwrap_or(0.0);
                 self.flux / area * density / cosine
             }
+            Emitter::Opening(opening) => {
+                if out.dot(shape.normal(point)) <= 0.0 {
+                    return 0.0;
+                }
+                let local = opening.frame().to_local(out);
+                let density = self.emission.density(EmitterKind::Point, local).unwrap_or(0.0);
+                self.flux * density / opening.projected_area(out)
+            }
             // Along all lines that pass the middle at no more than the reach.
             Emitter::Far { center, reach, .. } => {
                 let from = point - center;
@@ -41,6 +49,22 @@ impl Source {
             | Emitter::Line { .. }
             | Emitter::Volume { .. }
             | Emitter::Rays { .. } => 0.0,
+        }
+    }
+
+    /// Projected area times solid angle, over all places and directions from which it may emit, mm² sr; `None` without an area.
+    pub fn projected_extent(&self) -> Option<f64> {
+        match &self.emitter {
+            Emitter::Opening(opening) => Some(opening.projected_extent(self.emission.widest())),
+            Emitter::Point(_)
+            | Emitter::Line { .. }
+            | Emitter::Surface { .. }
+            | Emitter::Far { .. }
+            | Emitter::Volume { .. }
+            | Emitter::Rays { .. }
+            | Emitter::Fitted { .. } => {
+                Some(self.emitter.area()? * self.emission.projected_extent())
+            }
         }
     }
 }

@@ -24,6 +24,12 @@ impl Source {
                 let ray = self.emit_from_surface(&shapes[shape].0, *side, frame.as_ref(), sampler);
                 (ray, shape)
             }
+            Emitter::Opening(opening) => {
+                let local = self.emission.sample(EmitterKind::Point, sampler);
+                let dir = opening.frame().to_world(local);
+                let (shape, start) = opening.start(dir, sampler);
+                (Ray::new(start, dir), shape)
+            }
             Emitter::Far { center, radius, reach, .. } => {
                 (self.emit_from_afar(*center, *radius, *reach, sampler), 0)
             }

@@ -244,6 +244,10 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
             let exitance = source.flux / shapes[0].1;
             EmitterExtent::Surface(Surfaces { shapes, exitance })
         }
+        (Emitter::Opening(opening), None) => {
+            let exitance = source.flux / opening.area();
+            EmitterExtent::Surface(Surfaces { shapes: opening.shapes(), exitance })
+        }
         (Emitter::Surface { shapes, frame, .. }, beam) => {
             let exitance = source.flux / source.emitter.area()?;
             let surfaces = Surfaces { shapes, exitance };
@@ -262,7 +266,7 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
             beam.map_or(EmitterExtent::Far, |_| EmitterExtent::FarBeam)
         }
         (Emitter::Volume { .. } | Emitter::Rays { .. }, _)
-        | (Emitter::Point(_) | Emitter::Line { .. }, Some(_)) => {
+        | (Emitter::Point(_) | Emitter::Line { .. } | Emitter::Opening(_), Some(_)) => {
             return None;
         }
     };

@@ -80,7 +80,7 @@ pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
         Emitter::Line { .. } => Some("it is a line"),
         Emitter::Rays { .. } => Some("it is a set of rays"),
         Emitter::Fitted { .. } => None,
-        Emitter::Surface { .. } | Emitter::Far { .. } => source
+        Emitter::Surface { .. } | Emitter::Opening(_) | Emitter::Far { .. } => source
             .emission
             .density(EmitterKind::Surface, any)
             .is_none()
@@ -261,6 +261,7 @@ fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<EmittingBody<'s>> {
     };
     match &source.emitter {
         Emitter::Surface { shapes, .. } => Some(surface(shapes)),
+        Emitter::Opening(opening) => Some(surface(opening.shapes())),
         Emitter::Far { shapes, .. } | Emitter::Fitted { shapes, .. } => Some(surface(shapes)),
         Emitter::Volume { solid, .. } => {
             let volume = scene.solids[solid.index()].volume?;
@@ -288,7 +289,9 @@ mod tests {
     use crate::optics::Medium;
     use crate::rng::Sampler;
     use crate::scene::shape::{Cylinder, Flat, Region};
-    use crate::scene::{Builder, Emission, EmitSide, EmittedRay, FittedLight, Ray, RaySet};
+    use crate::scene::{
+        Builder, Emission, EmitSide, EmittedRay, FittedLight, LuminousOpening, Ray, RaySet,
+    };
     use lumiduct_base::math::Frame;
     use lumiduct_base::units::FluxUnit;
     use std::sync::Arc;
@@ -318,10 +321,16 @@ mod tests {
         let cone = Emission::Cone { half_angle: 0.2, axis: DVec3::Z };
         let wall = Shape::Cylinder(Cylinder::new(Frame::WORLD, 1.0, 3.0));
         let surface = |shapes, frame| Emitter::surface(shapes, EmitSide::Front, frame);
+        let aside = |x: f64| tilted.shifted(DVec3::new(x, 0.0, 0.0));
+        let (sizes, flat) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, 0.0));
+        let cosine = Emission::CosinePower(0.5);
         let emitters = [
             (surface(vec![disk(5.0)], Some(tilted)), cone),
             (surface(vec![disk(9.0), wall, disk(20.0)], None), Emission::CosinePower(3.0)),
             (fitted(), Emission::Isotropic),
+            (Emitter::Opening(LuminousOpening::cuboid(aside(20.0), sizes)), Emission::Isotropic),
+            (Emitter::Opening(LuminousOpening::cuboid(aside(40.0), flat)), Emission::Isotropic),
+            (Emitter::Opening(LuminousOpening::cylinder(aside(60.0), 1.0, 2.0)), cosine),
         ];
         for (emitter, emission) in emitters {
             builder.add_source(Source {
@@ -338,7 +347,8 @@ mod tests {
         }
         let scene = builder.build();
         let emitters = Emitters::new(&scene);
-        for (source, index) in [0, 1, 2].into_iter().flat_map(|one| (0..200).map(move |i| (one, i)))
+        for (source, index) in
+            (0..scene.sources.len()).flat_map(|one| (0..200).map(move |i| (one, i)))
         {
             let id = SourceId::new(source);
             let emitted = scene.sources[source].emit(&scene, &mut Sampler::for_path(3, 0, index));

@@ -269,10 +269,18 @@ fn a_cut_that_cannot_be_drawn_says_why() {
 }
 
 #[test]
-fn the_library_names_its_media_with_their_sources_and_scenes_use_them() {
+fn the_library_names_its_entries_with_their_sources_and_scenes_use_them() {
     let place = Place::new();
     let said = place.good("library");
-    for words in ["pmma: poly(methyl methacrylate)", "Abbe number", "Malitson", "CC0 1.0"] {
+    for words in [
+        "pmma: poly(methyl methacrylate)",
+        "Abbe number",
+        "Malitson",
+        "CC0 1.0",
+        "esr: polymer mirror film",
+        "  { specular = { reflectance = 0.98 } }",
+        "PerkinElmer",
+    ] {
         assert!(said.contains(words), "no {words} in {said}");
     }
     let said = place.good("check rod.toml -D solids.rod.cylinder.medium=\"pc\"");

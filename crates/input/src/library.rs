@@ -1,13 +1,21 @@
-//! Media that scenes can name without defining them, with the sources of their numbers.
+//! Media and finishes that scenes can name without defining them, with the sources of their numbers.
+//!
+//! An entry has the keys that a scene would give it, so that the spec types of scenes read it. Nothing is known here of
+//! what the numbers mean.
 
+use crate::spec::finish::FinishSpec;
 use indexmap::IndexMap;
 use lumiduct_core::optics::IndexLaw;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use std::sync::LazyLock;
 
 static MEDIA: LazyLock<IndexMap<String, LibraryMedium>> = LazyLock::new(|| {
     toml::from_str(include_str!("../library/media.toml")).expect("a test reads the library")
 });
+
+static FINISHES: LazyLock<IndexMap<String, LibraryEntry<FinishSpec>>> =
+    LazyLock::new(|| entries(include_str!("../library/finishes.toml")));
 
 /// A medium of the library.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -42,9 +50,51 @@ impl LibraryMedium {
     }
 }
 
+/// An entry of the library that has the keys of a table of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LibraryEntry<Spec> {
+    /// What it is.
+    pub description: String,
+    /// Where its numbers are from.
+    pub source: String,
+    /// The licence of its numbers.
+    pub licence: String,
+    /// Its keys and values in TOML, on one line, as a scene would define it in place.
+    pub keys: String,
+    pub(crate) spec: Spec,
+}
+
+/// An entry as it is in the file.
+#[derive(Deserialize)]
+struct WrittenEntry {
+    description: String,
+    source: String,
+    licence: String,
+    #[serde(flatten)]
+    keys: toml::Table,
+}
+
+fn entries<Spec: DeserializeOwned>(text: &str) -> IndexMap<String, LibraryEntry<Spec>> {
+    let written: IndexMap<String, WrittenEntry> =
+        toml::from_str(text).expect("a test reads the library");
+    let entry = |WrittenEntry { description, source, licence, keys }| LibraryEntry {
+        description,
+        source,
+        licence,
+        keys: toml::Value::Table(keys.clone()).to_string(),
+        spec: keys.try_into().expect("a test reads the library"),
+    };
+    written.into_iter().map(|(name, written)| (name, entry(written))).collect()
+}
+
 /// All media of the library by name, in its order.
 pub fn media() -> &'static IndexMap<String, LibraryMedium> {
     &MEDIA
+}
+
+/// All finishes of the library by name, in its order.
+pub fn finishes() -> &'static IndexMap<String, LibraryEntry<FinishSpec>> {
+    &FINISHES
 }
 
 #[cfg(test)]
@@ -72,12 +122,35 @@ mod tests {
     }
 
     #[test]
+    fn metals_reflect_what_their_descriptions_say() {
+        for (name, reflectance) in [("aluminium", "91.5 %"), ("silver", "98.4 %")] {
+            let entry = &finishes()[name];
+            let FinishSpec::Metal(metal) = &entry.spec else { panic!("{name} is no metal") };
+            let share = |n: f64| (n - 1.0).powi(2) + metal.k.powi(2);
+            // Born & Wolf, 7th ed., 14.2: at normal incidence.
+            let found = format!("{:.1} %", 100.0 * share(metal.n) / share(-metal.n));
+            assert_eq!(found, reflectance, "{name}");
+            assert!(entry.description.contains(&found), "{name}");
+        }
+    }
+
+    #[test]
+    fn an_entry_keeps_its_keys_as_a_scene_would_have_them() {
+        assert_eq!(finishes()["esr"].keys, "{ specular = { reflectance = 0.98 } }");
+    }
+
+    #[test]
     fn every_entry_says_where_its_numbers_are_from() {
         for (name, medium) in media() {
             let texts = [&medium.description, &medium.source, &medium.licence];
             assert!(texts.iter().all(|text| text.len() > 5), "{name}");
             let [first, last] = medium.range_nm;
             assert!(first < 550.0 && last > 650.0, "{name}");
+        }
+        assert_eq!(finishes().len(), 10);
+        for (name, entry) in finishes() {
+            let texts = [&entry.description, &entry.source, &entry.licence];
+            assert!(texts.iter().all(|text| text.len() > 5), "{name}");
         }
     }
 }

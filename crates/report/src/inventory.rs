@@ -10,7 +10,7 @@ use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, REFERENCE_WAVELENGT
 use lumiduct_core::scene::{
     Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
 };
-use lumiduct_input::Outline;
+use lumiduct_input::{Outline, library};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -153,7 +153,7 @@ fn finishes(scene: &Scene, outline: &Outline) -> Listing {
             let name = &scene.finishes[index].name;
             let words = match outline.entry("finishes", name, &[]) {
                 told if !told.is_empty() => told,
-                _ => predefined(name)?.to_owned(),
+                _ => predefined(name).map(str::to_owned).or_else(|| listed(name))?,
             };
             let sheets = scene.finishes[index].finish.measured_sheets();
             let checks: Vec<String> = sheets.iter().map(|own| own.checks.to_string()).collect();
@@ -171,6 +171,12 @@ fn predefined(name: &str) -> Option<&'static str> {
         "open" => Some("lets all light pass"),
         _ => None,
     }
+}
+
+/// The keys and the source of a finish of the library.
+fn listed(name: &str) -> Option<String> {
+    let entry = library::finishes().get(name)?;
+    Some(format!("{}, of the library: {}", entry.keys, entry.source))
 }
 
 fn solids(scene: &Scene, outline: &Outline) -> Listing {

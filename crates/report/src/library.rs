@@ -1,12 +1,17 @@
-//! The library of media as a table.
+//! The library as text: what scenes can name, with the sources of its numbers.
 
+use indexmap::IndexMap;
 use lumiduct_base::number::{format_fixed, format_value};
 use lumiduct_core::optics::REFERENCE_WAVELENGTH;
-use lumiduct_input::library;
+use lumiduct_input::library::{self, LibraryEntry};
 use std::fmt::Write;
 
-/// The media that scenes can name, with their sources.
+/// The media and finishes that scenes can name, with their sources.
 pub fn library_table() -> String {
+    media() + &entries("\nFinishes, for `finish = \"NAME\"`:\n", library::finishes())
+}
+
+fn media() -> String {
     let mut text =
         String::from("Media, for `medium = \"NAME\"` or `index = { library = \"NAME\" }`:\n");
     for (name, medium) in library::media() {
@@ -22,6 +27,16 @@ pub fn library_table() -> String {
             medium.source,
             medium.licence
         );
+    }
+    text
+}
+
+fn entries<Spec>(heading: &str, entries: &IndexMap<String, LibraryEntry<Spec>>) -> String {
+    let mut text = String::from(heading);
+    for (name, entry) in entries {
+        let LibraryEntry { description, source, licence, keys, .. } = entry;
+        // Writing to a string cannot fail.
+        _ = write!(text, "\n{name}: {description}\n  {keys}\n  {source} ({licence})\n");
     }
     text
 }

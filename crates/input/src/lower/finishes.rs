@@ -1,6 +1,7 @@
 //! Finishes: names, references, tables in place, and the BSDF of each kind.
 
 use crate::keys::Key;
+use crate::library;
 use crate::lower::context::Context;
 use crate::spec::PREDEFINED_FINISHES;
 use crate::spec::finish::{
@@ -60,10 +61,12 @@ impl<'a> Context<'a> {
     pub(super) fn finish(&mut self, reference: &'a FinishRef, key: &Key) -> Option<FinishId> {
         match reference {
             FinishRef::Name(name) => {
-                let finish = self.finishes.get(name).copied();
+                let own = self.finishes.get(name).copied();
+                let finish = own.or_else(|| self.listed_finish(name, key));
                 if finish.is_none() {
-                    let what = ["finish", "finishes"];
-                    self.require_known(what, name, &PREDEFINED_FINISHES, key);
+                    let listed = library::finishes().keys().map(String::as_str);
+                    let known: Vec<&str> = PREDEFINED_FINISHES.into_iter().chain(listed).collect();
+                    self.require_known(["finish", "finishes"], name, &known, key);
                 }
                 finish
             }
@@ -72,6 +75,19 @@ impl<'a> Context<'a> {
                 Some(self.builder.add_finish("in place", finish))
             }
         }
+    }
+
+    /// A finish of the library, unless the scene has one of this name.
+    fn listed_finish(&mut self, name: &str, key: &Key) -> Option<FinishId> {
+        let known = library::finishes().get(name)?;
+        if self.names("finishes").contains(name) {
+            return None;
+        }
+        self.meshes.add(known.keys.as_bytes());
+        let finish = self.resolve(&known.spec, key, &mut OpenMixtures::default())?;
+        let id = self.builder.add_finish(name, finish);
+        self.finishes.insert(name.to_owned(), id);
+        Some(id)
     }
 
     /// The finishes of a table of faces.

@@ -294,7 +294,8 @@ pub struct MixturePartSpec {
     pub finish: FinishRef,
 }
 
-/// A finish: the name of one in `finishes`, a predefined one (`polished`, `black`, `open`), or a finish table in place.
+/// A finish: the name of one in `finishes`, a predefined one (`polished`, `black`, `open`), one of those that `lumiduct library` lists, or a finish
+/// table in place. A finish of the scene replaces another of the same name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "FinishReference")]

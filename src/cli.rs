@@ -63,7 +63,7 @@ enum Command {
     Check(CheckArgs),
     /// Print reflectance and transmittance of the prism films of a scene against the angle.
     Film(FilmArgs),
-    /// Print the media and finishes that scenes can name without defining them, with the sources of their numbers.
+    /// Print the media, finishes and emissions that scenes can name without defining them, with the sources of their numbers.
     Library,
     /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it is not a valid solid.
     Mesh(MeshArgs),

@@ -280,9 +280,15 @@ fn the_library_names_its_entries_with_their_sources_and_scenes_use_them() {
         "esr: polymer mirror film",
         "  { specular = { reflectance = 0.98 } }",
         "PerkinElmer",
+        "smd_0603_120deg: chip LED 0603 (1.6 x 0.8 mm)",
+        "{ viewing_angle_deg = 120 }",
     ] {
         assert!(said.contains(words), "no {words} in {said}");
     }
     let said = place.good("check rod.toml -D solids.rod.cylinder.medium=\"pc\"");
     assert!(said.contains("medium pc: index 1.5"), "{said}");
+    let said = place.good("check rod.toml -D solids.rod.cylinder.faces.wall=esr");
+    assert!(said.contains("{ specular = { reflectance = 0.98 } }, of the library"), "{said}");
+    let said = place.good("check rod.toml -D sources.led.disk.emission=smd_0603_120deg");
+    assert!(said.contains("emission smd_0603_120deg"), "{said}");
 }

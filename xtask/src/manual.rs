@@ -57,7 +57,7 @@ fn reference(schema: &Json) -> String {
 }
 
 /// Tables at the top of a file, and their headings.
-const FAMILIES: [(&str, &str); 15] = [
+const FAMILIES: [(&str, &str); 16] = [
     ("Parameter", "parameters.NAME"),
     ("Plan", "plan"),
     ("StudyRun", "run of a study"),
@@ -69,6 +69,7 @@ const FAMILIES: [(&str, &str); 15] = [
     ("Sheet", "sheets.NAME"),
     ("Pattern", "patterns.NAME"),
     ("Relief", "reliefs.NAME"),
+    ("Emission", "emissions.NAME"),
     ("Source", "sources.NAME"),
     ("Sensor", "sensors.NAME"),
     ("Run", "run"),

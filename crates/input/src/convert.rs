@@ -28,6 +28,7 @@ pub(crate) fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         sheets: entries(root, "sheets", problems),
         patterns: entries(root, "patterns", problems),
         reliefs: entries(root, "reliefs", problems),
+        emissions: entries(root, "emissions", problems),
         sources: entries(root, "sources", problems),
         sensors: entries(root, "sensors", problems),
         run: value(root, "run", problems).unwrap_or_default(),

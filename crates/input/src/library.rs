@@ -1,9 +1,10 @@
-//! Media and finishes that scenes can name without defining them, with the sources of their numbers.
+//! Media, finishes and emissions that scenes can name without defining them, with the sources of their numbers.
 //!
 //! An entry has the keys that a scene would give it, so that the spec types of scenes read it. Nothing is known here of
 //! what the numbers mean.
 
 use crate::spec::finish::FinishSpec;
+use crate::spec::source::EmissionSpec;
 use indexmap::IndexMap;
 use lumiduct_core::optics::IndexLaw;
 use serde::Deserialize;
@@ -16,6 +17,9 @@ static MEDIA: LazyLock<IndexMap<String, LibraryMedium>> = LazyLock::new(|| {
 
 static FINISHES: LazyLock<IndexMap<String, LibraryEntry<FinishSpec>>> =
     LazyLock::new(|| entries(include_str!("../library/finishes.toml")));
+
+static EMISSIONS: LazyLock<IndexMap<String, LibraryEntry<EmissionSpec>>> =
+    LazyLock::new(|| entries(include_str!("../library/emissions.toml")));
 
 /// A medium of the library.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -97,6 +101,11 @@ pub fn finishes() -> &'static IndexMap<String, LibraryEntry<FinishSpec>> {
     &FINISHES
 }
 
+/// All emissions of the library by name, in its order.
+pub fn emissions() -> &'static IndexMap<String, LibraryEntry<EmissionSpec>> {
+    &EMISSIONS
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,9 +157,22 @@ mod tests {
             assert!(first < 550.0 && last > 650.0, "{name}");
         }
         assert_eq!(finishes().len(), 10);
-        for (name, entry) in finishes() {
-            let texts = [&entry.description, &entry.source, &entry.licence];
-            assert!(texts.iter().all(|text| text.len() > 5), "{name}");
+        finishes().iter().for_each(|(name, entry)| assert_is_cited(name, entry));
+        assert_eq!(emissions().len(), 15);
+        emissions().iter().for_each(|(name, entry)| assert_is_cited(name, entry));
+    }
+
+    fn assert_is_cited<Spec>(name: &str, entry: &LibraryEntry<Spec>) {
+        let texts = [&entry.description, &entry.source, &entry.licence];
+        assert!(texts.iter().all(|text| text.len() > 5), "{name}");
+    }
+
+    #[test]
+    fn names_of_emissions_end_in_their_viewing_angle() {
+        for (name, entry) in emissions() {
+            let EmissionSpec::ViewingAngleDeg(angle) = entry.spec else { panic!("{name}") };
+            assert!(name.ends_with(&format!("_{angle}deg")), "{name}: {angle}");
+            assert!(entry.description.contains(&format!("{angle} deg")), "{name}: {angle}");
         }
     }
 }

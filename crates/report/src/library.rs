@@ -6,9 +6,11 @@ use lumiduct_core::optics::REFERENCE_WAVELENGTH;
 use lumiduct_input::library::{self, LibraryEntry};
 use std::fmt::Write;
 
-/// The media and finishes that scenes can name, with their sources.
+/// The media, finishes and emissions that scenes can name, with their sources.
 pub fn library_table() -> String {
-    media() + &entries("\nFinishes, for `finish = \"NAME\"`:\n", library::finishes())
+    let finishes = entries("\nFinishes, for `finish = \"NAME\"`:\n", library::finishes());
+    let emissions = entries("\nEmissions, for `emission = \"NAME\"`:\n", library::emissions());
+    [media(), finishes, emissions].concat()
 }
 
 fn media() -> String {

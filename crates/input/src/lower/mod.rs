@@ -10,6 +10,7 @@ mod consistency;
 mod contacts;
 pub(crate) mod context;
 mod daylight;
+mod emissions;
 mod emitters;
 mod finishes;
 mod flux;

@@ -15,7 +15,9 @@ const RESERVED: [&str; 1] = ["balance"];
 const MOST_LETTERS: usize = 64;
 
 pub(crate) fn check(places: &Places, problems: &mut Problems) {
-    for family in ["media", "finishes", "patterns", "reliefs"].into_iter().chain(SHARED) {
+    for family in
+        ["media", "finishes", "emissions", "patterns", "reliefs"].into_iter().chain(SHARED)
+    {
         for (name, entry) in named(places.root(), family) {
             if let Some(problem) = check_name(name, &Key::of(&[family, name]), problems) {
                 problem.at(&entry.key);

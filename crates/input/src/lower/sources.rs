@@ -37,6 +37,7 @@ pub(super) struct PlacedSource<'a> {
 impl<'a> Context<'a> {
     pub(super) fn lower_sources(&mut self) {
         self.check_units();
+        self.check_names_of_emissions();
         let spec = self.spec;
         for (name, source) in &spec.sources {
             let key = Key::of(&["sources", name, source.kind()]);
@@ -163,7 +164,11 @@ impl<'a> Context<'a> {
         let is_volume = extent == SourceExtent::Volume;
         let default = if is_volume { EmissionSpec::Isotropic } else { EmissionSpec::Lambertian };
         let axis = tilted(common.tilt_deg, common.azimuth_deg);
-        let emission = match common.emission.unwrap_or(default) {
+        let spec = match &common.emission {
+            Some(reference) => self.emission_spec(reference, &key.field("emission"))?,
+            None => default,
+        };
+        let emission = match spec {
             EmissionSpec::Lambertian => Emission::Lambertian,
             EmissionSpec::Isotropic => Emission::Isotropic,
             EmissionSpec::Collimated => Emission::Collimated { axis },

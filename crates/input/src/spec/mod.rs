@@ -34,7 +34,7 @@ use run::RunSpec;
 use sensor::SensorSpec;
 use sheet::SheetSpec;
 use solid::SolidSpec;
-use source::SourceSpec;
+use source::{EmissionSpec, SourceSpec};
 
 /// The version of the format that this program reads.
 pub(crate) const FORMAT_VERSION: u32 = 1;
@@ -79,6 +79,9 @@ pub struct SceneSpec {
     /// Dimples, grooves and the like on walls of solids, by name.
     #[serde(default)]
     pub reliefs: IndexMap<String, ReliefSpec>,
+    /// Emissions by name: how light of a source is spread over directions.
+    #[serde(default)]
+    pub emissions: IndexMap<String, EmissionSpec>,
     /// Light sources by name.
     #[serde(default)]
     pub sources: IndexMap<String, SourceSpec>,

@@ -130,7 +130,7 @@ pub struct SourceCommonSpec {
     #[schemars(range(min = 0.0))]
     pub intensity_mcd: Option<f64>,
     /// Distribution of the light over directions. Omitted: `isotropic` for a `volume`, `lambertian` for all others.
-    pub emission: Option<EmissionSpec>,
+    pub emission: Option<EmissionRef>,
     /// Angle between the axis and the direction of a cone or a collimated beam.
     #[serde(default)]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 90.0))]
@@ -214,6 +214,18 @@ pub enum FaceSide {
     Back,
 }
 
+/// Distribution of light over directions: one of the kinds of emission, the name of one in `emissions`, or of one that `lumiduct library` lists. An
+/// emission of the scene replaces one of the library of the same name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "EmissionReference")]
+pub enum EmissionRef {
+    /// The emission itself.
+    Inline(EmissionSpec),
+    /// Name of an emission, such as `smd_0603_120deg`.
+    Name(String),
+}
+
 /// Distribution of light over directions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -234,6 +246,13 @@ pub enum EmissionSpec {
     /// The same luminance within a cone of this half-angle, none outside.
     ConeHalfAngleDeg(#[schemars(extend("exclusiveMinimum" = 0.0), range(max = 90.0))] f64),
 }
+
+/// Kinds of emission that are words.
+pub(crate) const EMISSION_WORDS: [&str; 3] = ["lambertian", "isotropic", "collimated"];
+
+/// Keys of the kinds of emission that are tables.
+pub(crate) const EMISSION_TABLES: [&str; 3] =
+    ["cosine_power", "viewing_angle_deg", "cone_half_angle_deg"];
 
 /// What happens to light that meets an emitter: `transparent` lets it pass, `absorbing` absorbs it; or a finish.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value as Json;
 
 use crate::keys::{Key, KeySegment};
+use crate::own_library::LIBRARY;
 use crate::problems::Problems;
 use crate::spec::study::StudySpec;
 use crate::spec::{AIR, FORMAT_VERSION, NORTH, SceneSpec, UP};
@@ -19,6 +20,7 @@ pub(crate) fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         title: value(root, "title", problems).unwrap_or_default(),
         description: value(root, "description", problems),
         project: value(root, "project", problems),
+        library: value(root, LIBRARY, problems),
         surroundings: value(root, "surroundings", problems).unwrap_or_else(|| AIR.into()),
         up: value(root, "up", problems).unwrap_or(UP),
         north: value(root, "north", problems).unwrap_or(NORTH),

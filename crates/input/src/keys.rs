@@ -138,6 +138,13 @@ impl Places {
         self.sources.get(origin.source).line(origin.span.start)
     }
 
+    /// Whether a key is in another file than that of the tree.
+    pub(crate) fn is_in_another_file(&self, key: &Key) -> bool {
+        let is_other = |origin: &&Origin| origin.source != self.root.origin.source;
+        let other = self.value(key).filter(is_other);
+        other.is_some_and(|origin| self.sources.folder(origin).is_some())
+    }
+
     /// The folder that a relative path at this key starts from: that of the file that contains the
     /// key; for the command line that of the scene.
     pub fn folder(&self, key: &Key) -> PathBuf {

@@ -58,6 +58,7 @@ mod list;
 mod lower;
 mod outline;
 pub(crate) mod overrides;
+mod own_library;
 pub mod problems;
 mod project;
 mod scatter;
@@ -149,10 +150,11 @@ pub(crate) fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     let text = sources.get(scene).text().to_owned();
 
     let overrides = overrides::read(overrides, &mut sources, &mut problems);
-    let (early, late): (Vec<_>, Vec<_>) =
-        overrides.iter().partition(|one| one.names_a_sensor_file());
+    let (early, late): (Vec<_>, Vec<_>) = overrides.iter().partition(|one| one.names_a_file());
     early.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
     breaks.extend(include::join_sensor_files(&mut root, &mut sources, &mut problems));
+    let (library, errors) = own_library::join(&mut root, &mut sources, &mut problems);
+    breaks.extend(errors);
     late.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
 
     if is_other_kind(&root, &mut problems) {
@@ -160,7 +162,8 @@ pub(crate) fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     }
     note_differences(&root, &schema::json_schema(), &sources, &breaks, &mut problems);
     note_breaks(&breaks, &mut problems);
-    let spec = convert::scene(&root, &mut problems);
+    let mut spec = convert::scene(&root, &mut problems);
+    library.leave_out_unnamed(&root, &mut spec);
     let places = Places::new(root, sources);
     Ok(Draft { spec, places, text, problems, completeness: completeness(&breaks) })
 }

@@ -3,6 +3,7 @@
 //! They are inserted into the tree before it is validated, and validated like any other value.
 
 use crate::keys::{Key, KeySegment};
+use crate::own_library::LIBRARY;
 use crate::problems::{Problems, name_hint};
 use crate::texts::{Origin, TextId, Texts};
 use crate::tree::{self, Entry, Node, Value};
@@ -17,9 +18,10 @@ pub(crate) struct Override {
 }
 
 impl Override {
-    /// Whether it sets the file of a sensor, which must be known before that file is read.
-    pub(crate) fn names_a_sensor_file(&self) -> bool {
+    /// Whether it sets the file of a sensor or the folder of the library, which must be known before they are read.
+    pub(crate) fn names_a_file(&self) -> bool {
         match self.key.segments() {
+            [KeySegment::Field(key)] => key == LIBRARY,
             [KeySegment::Field(family), _, KeySegment::Field(key)] => {
                 family == "sensors" && key == "file"
             }

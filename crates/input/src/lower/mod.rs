@@ -102,7 +102,7 @@ pub(crate) fn lower(
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
     luminaire_exports::note_distances(&scene, &exports, problems);
-    spectra::note_tables(spec, &scene, problems);
+    spectra::note_tables(spec, places, &scene, problems);
     spectra::note_library(spec, &scene, problems);
     let checks = spec.check.clone();
     problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes, exports })

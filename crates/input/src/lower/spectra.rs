@@ -1,6 +1,6 @@
 //! Spectra of sources, and indices and absorption by wavelength.
 
-use crate::keys::Key;
+use crate::keys::{Key, Places};
 use crate::library;
 use crate::lower::context::Context;
 use crate::lower::media::library_names;
@@ -283,7 +283,12 @@ pub(super) fn whole_nm() -> impl Iterator<Item = f64> {
 }
 
 /// Notes media whose tables end within the light of the sources, and those that disperse light without a spectrum.
-pub(super) fn note_tables(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
+pub(super) fn note_tables(
+    spec: &SceneSpec,
+    places: &Places,
+    scene: &Scene,
+    problems: &mut Problems,
+) {
     let spectra: Vec<&Spectrum> = lit_spectra(scene).collect();
     for (name, medium) in &spec.media {
         let Some(made) = scene.media.iter().find(|own| own.name() == name) else { continue };
@@ -297,8 +302,10 @@ pub(super) fn note_tables(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
         ];
         for (field, is_law, table) in tables {
             let key = Key::of(&["media", name, field]);
-            let is_listed = matches!(medium.index, IndexSpec::Law(IndexLawSpec::Library(_)));
-            if is_law && spectra.is_empty() && !(field == "index" && is_listed) {
+            let is_listed = places.is_in_another_file(&key)
+                || field == "index"
+                    && matches!(medium.index, IndexSpec::Law(IndexLawSpec::Library(_)));
+            if is_law && spectra.is_empty() && !is_listed {
                 problems
                     .warning(&key, "no source has a spectrum: its value at 555 nm applies")
                     .hint("give every source a `spectrum`");

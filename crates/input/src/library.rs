@@ -6,7 +6,8 @@
 use crate::spec::finish::FinishSpec;
 use crate::spec::source::EmissionSpec;
 use indexmap::IndexMap;
-use lumiduct_core::optics::IndexLaw;
+use lumiduct_core::colour::SpectralTable;
+use lumiduct_core::optics::{AbsorptionLaw, IndexLaw};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::sync::LazyLock;
@@ -28,6 +29,7 @@ pub struct LibraryMedium {
     /// What it is.
     pub description: String,
     index: LibraryIndex,
+    absorption_per_mm: Option<LibraryAbsorption>,
     /// The wavelengths for which its index was measured, nm.
     pub range_nm: [f64; 2],
     /// Where its numbers are from.
@@ -44,6 +46,13 @@ enum LibraryIndex {
     Powers(Vec<(f64, i32)>),
 }
 
+/// An absorption by wavelength, as in a scene.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum LibraryAbsorption {
+    ByNm(Vec<[f64; 2]>),
+}
+
 impl LibraryMedium {
     /// Its index by wavelength.
     pub fn law(&self) -> IndexLaw {
@@ -51,6 +60,13 @@ impl LibraryMedium {
             LibraryIndex::Sellmeier(terms) => IndexLaw::Sellmeier(terms.clone()),
             LibraryIndex::Powers(terms) => IndexLaw::Powers(terms.clone()),
         }
+    }
+
+    /// Its absorption by wavelength; `None` where it is not known, as of plastics, whose grades differ.
+    pub fn absorption(&self) -> Option<AbsorptionLaw> {
+        let LibraryAbsorption::ByNm(rows) = self.absorption_per_mm.as_ref()?;
+        let table = SpectralTable::new(rows.clone()).expect("a test reads the library");
+        Some(AbsorptionLaw::Table(table))
     }
 }
 
@@ -113,7 +129,10 @@ mod tests {
     #[test]
     fn media_have_the_indices_of_their_sources_at_the_d_line() {
         let names: Vec<&str> = media().keys().map(String::as_str).collect();
-        assert_eq!(names, ["pmma", "pc", "ps", "bk7", "fused_silica", "water"]);
+        assert_eq!(
+            names,
+            ["pmma", "pc", "ps", "bk7", "fused_silica", "water", "pure_water", "cop"]
+        );
         // Catalogue values of index and Abbe number; one-term laws have the index within 1e-3 and the Abbe number within 8 %.
         for (name, index, abbe) in [
             ("pmma", 1.4918, 57.4),
@@ -122,12 +141,25 @@ mod tests {
             ("bk7", 1.5168, 64.17),
             ("fused_silica", 1.45846, 67.8),
             ("water", 1.33336, 55.7),
+            ("pure_water", 1.33336, 55.7),
+            ("cop", 1.531, 56.0),
         ] {
             let law = media()[name].law();
             let found = [law.at(587.5618), law.abbe_number()];
             assert!((found[0] - index).abs() < 1.5e-3, "{name}: {found:?}");
             assert!((found[1] / abbe - 1.0).abs() < 0.08, "{name}: {found:?}");
         }
+    }
+
+    #[test]
+    fn only_pure_water_absorbs_and_least_at_420_nm() {
+        let absorbing = media().iter().filter_map(|(name, own)| Some((name, own.absorption()?)));
+        let [(name, law)] = absorbing.collect::<Vec<_>>().try_into().unwrap();
+        assert_eq!(name, "pure_water");
+        // Pope & Fry (1997), table 3: 0.0204 /m at 500 nm, 0.340 /m at 650 nm.
+        assert_eq!([500.0, 650.0].map(|nm| law.at(nm)), [20.4e-6, 340e-6]);
+        let all = (400..=700).map(|nm| law.at(f64::from(nm)));
+        assert_eq!(all.fold(1.0, f64::min), law.at(420.0));
     }
 
     #[test]

@@ -19,10 +19,16 @@ fn media() -> String {
     for (name, medium) in library::media() {
         let law = medium.law();
         let [first, last] = medium.range_nm.map(format_value);
+        let absorption = medium.absorption().map_or("no absorption".to_owned(), |absorption| {
+            format!(
+                "absorption {} /mm at 555 nm",
+                format_value(absorption.at(REFERENCE_WAVELENGTH))
+            )
+        });
         // Writing to a string cannot fail.
         _ = write!(
             text,
-            "\n{name}: {}\n  index {} at {REFERENCE_WAVELENGTH} nm, Abbe number {}, from {first} to {last} nm; no absorption\n  {} ({})\n",
+            "\n{name}: {}\n  index {} at {REFERENCE_WAVELENGTH} nm, Abbe number {}, from {first} to {last} nm; {absorption}\n  {} ({})\n",
             medium.description,
             format_fixed(law.at(REFERENCE_WAVELENGTH), 4),
             format_fixed(law.abbe_number(), 1),

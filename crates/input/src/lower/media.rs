@@ -63,8 +63,13 @@ impl Context<'_> {
             self.require_known(["medium", "media"], name, &predefined, key);
             return None;
         };
-        let law = self.hashed(known.law());
-        let made = Medium::dispersive(name, law, AbsorptionLaw::Constant(0.0));
+        let index = self.hashed(known.law());
+        let absorption = known.absorption().unwrap_or(AbsorptionLaw::Constant(0.0));
+        if let AbsorptionLaw::Table(table) = &absorption {
+            let numbers = table.rows().iter().flatten();
+            numbers.for_each(|number| self.meshes.add(&number.to_le_bytes()));
+        }
+        let made = Medium::dispersive(name, index, absorption);
         let medium = self.builder.add_medium(made);
         self.media.insert(name.to_owned(), medium);
         Some(medium)

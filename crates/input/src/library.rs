@@ -156,7 +156,7 @@ mod tests {
         let absorbing = media().iter().filter_map(|(name, own)| Some((name, own.absorption()?)));
         let [(name, law)] = absorbing.collect::<Vec<_>>().try_into().unwrap();
         assert_eq!(name, "pure_water");
-        // Pope & Fry (1997), table 3: 0.0204 /m at 500 nm, 0.340 /m at 650 nm.
+        // Pope & Fry (1997): 0.0204 /m at 500 nm, 0.340 /m at 650 nm.
         assert_eq!([500.0, 650.0].map(|nm| law.at(nm)), [20.4e-6, 340e-6]);
         let all = (400..=700).map(|nm| law.at(f64::from(nm)));
         assert_eq!(all.fold(1.0, f64::min), law.at(420.0));

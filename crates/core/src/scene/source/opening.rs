@@ -1,8 +1,8 @@
 //! The luminous opening of a luminaire: both sides of a plane, the faces of a box, or an upright cylinder.
 //!
 //! The intensities I(d) of a luminaire do not say where on its opening they leave. Luminance is taken as the same on all of the
-//! opening that is seen from a direction d: L(d) = I(d) / A(d), with the projected area A(d) = Σ A_f max(0, n_f · d). So a face
-//! emits its share A_f max(0, n_f · d) / A(d) of the intensity; the shares add up to 1 in every direction, and no flux is lost.
+//! opening that is seen from a direction d: L(d) = I(d) / A(d), with the projected area A(d) = Σ `A_f` max(0, `n_f` · d). So a face
+//! emits its share `A_f` max(0, `n_f` · d) / A(d) of the intensity; the shares add up to 1 in every direction, and no flux is lost.
 //! The opening is convex: light that leaves it does not meet it again. It knows no law of emission.
 
 use crate::rng::{Dimension, Numbers, Sampler};

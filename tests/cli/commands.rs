@@ -287,8 +287,11 @@ fn the_library_names_its_entries_with_their_sources_and_scenes_use_them() {
     }
     let said = place.good("check rod.toml -D solids.rod.cylinder.medium=\"pc\"");
     assert!(said.contains("medium pc: index 1.5"), "{said}");
-    let said = place.good("check rod.toml -D solids.rod.cylinder.faces.wall=esr");
+    let place = Place::with(
+        "[sheets.screen.rectangle]\nwidth_mm = 9\nheight_mm = 9\nfinish = \"esr\"\nat = { position_mm = [0, 0, -5] }\n\
+         [sources.chip.disk]\nradius_mm = 1\nflux_lm = 1\nemission = \"smd_0603_120deg\"\nat = { position_mm = [0, 0, -2] }\n",
+    );
+    let said = place.good("check rod.toml");
     assert!(said.contains("{ specular = { reflectance = 0.98 } }, of the library"), "{said}");
-    let said = place.good("check rod.toml -D sources.led.disk.emission=smd_0603_120deg");
     assert!(said.contains("emission smd_0603_120deg"), "{said}");
 }

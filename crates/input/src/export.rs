@@ -85,7 +85,7 @@ impl LuminaireExport {
             "its files have the intensities at a distance of {distance} mm{beside}; they are those of the far field only where \
                 the distance is at least {LEAST_DISTANCE} times {size}, and more for narrow beams"
         )];
-        if !goniometer.encloses(scene) {
+        if !scene.lies_within(goniometer.frame.origin, radius) {
             remarks.push(
                 "parts of the scene lie outside of its sphere: light that starts there is missing in the intensities, and light \
                     that returns into the sphere counts again when it leaves"

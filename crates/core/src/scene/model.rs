@@ -87,6 +87,18 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether the boxes around all that light starts on or meets lie within a sphere, mm.
+    pub fn lies_within(&self, middle: DVec3, radius: f64) -> bool {
+        let patches = self.patches.iter().map(|patch| patch.shape.bounds());
+        let meshes = self.meshes.iter().map(|body| body.bounds());
+        let near = self.sources.iter().filter(|source| !source.emitter.is_far());
+        let sources = near.map(|source| source.emitter.bounds());
+        patches.chain(meshes).chain(sources).all(|bounds| {
+            let [low, high] = [bounds.min, bounds.max].map(|corner| corner - middle);
+            low.abs().max(high.abs()).length() <= radius
+        })
+    }
+
     /// Flux of all sources, lm or W.
     pub fn source_flux(&self) -> f64 {
         self.sources.iter().map(|source| source.flux).sum()

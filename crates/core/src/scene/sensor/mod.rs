@@ -6,7 +6,7 @@ pub(crate) mod pixels;
 
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::shape::Toward;
-use crate::scene::{FaceId, Grid, Pixels, Ray, Scene};
+use crate::scene::{FaceId, Grid, Pixels, Ray};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame, cone_direction};
 use smallvec::SmallVec;
@@ -276,19 +276,6 @@ impl Goniometer {
         // The further root is the exit; from a start beyond it, it lies behind.
         let t = -half_b + discriminant.sqrt();
         (t > 0.0 && t <= length).then(|| (t, (ray.at(t) - self.frame.origin) / radius))
-    }
-
-    /// Whether the boxes around all that light starts on or meets lie within the sphere; true in the far field.
-    pub fn encloses(&self, scene: &Scene) -> bool {
-        let Some(radius) = self.radius else { return true };
-        let patches = scene.patches.iter().map(|patch| patch.shape.bounds());
-        let meshes = scene.meshes.iter().map(|body| body.bounds());
-        let near = scene.sources.iter().filter(|source| !source.emitter.is_far());
-        let sources = near.map(|source| source.emitter.bounds());
-        patches.chain(meshes).chain(sources).all(|bounds| {
-            let [low, high] = [bounds.min, bounds.max].map(|corner| corner - self.frame.origin);
-            low.abs().max(high.abs()).length() <= radius
-        })
     }
 
     /// Box around a finite sphere, mm; empty for the far field.

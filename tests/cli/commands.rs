@@ -154,7 +154,7 @@ fn a_luminaire_file_of_a_sphere_states_its_distance() {
     let said = place.good("run rod.toml --ies a.ies");
     let remark = "note: `sensors.far`: its files have the intensities at a distance of 99 mm;";
     assert!(said.contains(remark), "{said}");
-    assert!(!said.contains("outside of its sphere"), "{said}");
+    assert!(!said.contains("lie within its sphere"), "{said}");
     let text = fs::read_to_string(place.path("a.ies")).unwrap();
     assert!(text.contains("sensor far, at 99 mm\r\n"), "{text}");
     assert!(text.contains("[OTHER] intensities: illuminance at a distance of 99 mm"), "{text}");
@@ -172,7 +172,7 @@ fn a_luminaire_file_of_a_sphere_states_its_distance() {
     assert!(ldt.contains("sensor far, at 99 mm\r\n"), "{ldt}");
 
     let said = errors(&with_sphere(3, ", luminaire = {}").run("check rod.toml"));
-    assert!(said.contains("parts of the scene lie outside of its sphere"), "{said}");
+    assert!(said.contains("all parts of the scene do not lie within its sphere"), "{said}");
     // Of several goniometers, the only one in the far field is written.
     let both = Place::with("[sensors.near]\ngoniometer = { radius_mm = 99 }\n");
     assert!(!both.good("run rod.toml --ies a.ies").contains("at a distance of"));
@@ -277,7 +277,7 @@ fn the_library_names_its_entries_with_their_sources_and_scenes_use_them() {
         "Abbe number",
         "Malitson",
         "CC0 1.0",
-        "esr: polymer mirror film",
+        "esr: multilayer polymer mirror film",
         "  { specular = { reflectance = 0.98 } }",
         "PerkinElmer",
         "smd_0603_120deg: chip LED 0603 (1.6 x 0.8 mm)",

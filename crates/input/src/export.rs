@@ -82,13 +82,13 @@ impl LuminaireExport {
         };
         let distance = format_value(radius);
         let mut remarks = vec![format!(
-            "its files have the intensities at a distance of {distance} mm{beside}; they are those of the far field only where \
-                the distance is at least {LEAST_DISTANCE} times {size}, and more for narrow beams"
+            "its files have the intensities at a distance of {distance} mm{beside}; they equal those of the far field only if \
+                the distance is at least {LEAST_DISTANCE} times {size}, or more for narrow beams"
         )];
         if !scene.lies_within(goniometer.frame.origin, radius) {
             remarks.push(
-                "parts of the scene lie outside of its sphere: light that starts there is missing in the intensities, and light \
-                    that returns into the sphere counts again when it leaves"
+                "the boxes around all parts of the scene do not lie within its sphere: light that starts outside of it is \
+                    missing in the intensities, and light that returns into it counts again when it leaves"
                     .to_owned(),
             );
         }

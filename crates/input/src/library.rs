@@ -190,7 +190,7 @@ mod tests {
         }
         assert_eq!(finishes().len(), 10);
         finishes().iter().for_each(|(name, entry)| assert_is_cited(name, entry));
-        assert_eq!(emissions().len(), 15);
+        assert_eq!(emissions().len(), 13);
         emissions().iter().for_each(|(name, entry)| assert_is_cited(name, entry));
     }
 

@@ -18,7 +18,25 @@ use crate::tree::{self, Entry, Node, SyntaxError, Value};
 pub(crate) const LIBRARY: &str = "library";
 
 /// The tables for which a library may have a file.
-const FAMILIES: [&str; 3] = ["media", "finishes", "emissions"];
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Family {
+    Media,
+    Finishes,
+    Emissions,
+}
+
+impl Family {
+    const ALL: [Self; 3] = [Self::Media, Self::Finishes, Self::Emissions];
+
+    /// The name of the table and of its file.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Media => "media",
+            Self::Finishes => "finishes",
+            Self::Emissions => "emissions",
+        }
+    }
+}
 
 /// Texts of an entry for its readers, which scenes do not have.
 const TEXTS: [&str; 3] = ["description", "source", "licence"];
@@ -29,7 +47,7 @@ const RANGE: &str = "range_nm";
 /// The entries of a library that joined a scene: their tables and names.
 #[derive(Debug, Default)]
 pub(crate) struct Joined {
-    entries: Vec<(&'static str, String)>,
+    entries: Vec<(Family, String)>,
 }
 
 impl Joined {
@@ -39,10 +57,10 @@ impl Joined {
         collect_texts(root, &mut texts);
         for (family, name) in self.entries.iter().filter(|(_, name)| !texts.contains(name.as_str()))
         {
-            match *family {
-                "media" => drop(spec.media.shift_remove(name)),
-                "finishes" => drop(spec.finishes.shift_remove(name)),
-                _ => drop(spec.emissions.shift_remove(name)),
+            match family {
+                Family::Media => drop(spec.media.shift_remove(name)),
+                Family::Finishes => drop(spec.finishes.shift_remove(name)),
+                Family::Emissions => drop(spec.emissions.shift_remove(name)),
             }
         }
     }
@@ -66,8 +84,8 @@ pub(crate) fn join(
         return (joined, breaks);
     }
     let mut missing = 0;
-    for family in FAMILIES {
-        let path = folder.join(format!("{family}.toml"));
+    for family in Family::ALL {
+        let path = folder.join(format!("{}.toml", family.name()));
         match sources.add_file(&path) {
             Ok(source) => {
                 let (file, errors) = tree::parse(sources, source);
@@ -80,8 +98,8 @@ pub(crate) fn join(
             }
         }
     }
-    if missing == FAMILIES.len() {
-        let files = FAMILIES.map(|family| format!("{family}.toml")).join(", ");
+    if missing == Family::ALL.len() {
+        let files = Family::ALL.map(|family| format!("{}.toml", family.name())).join(", ");
         problems.error(&key, format!("{} has none of {files}", folder.display())).at(&origin);
     }
     (joined, breaks)
@@ -89,7 +107,7 @@ pub(crate) fn join(
 
 fn join_file(
     root: &mut Node,
-    family: &'static str,
+    family: Family,
     file: Node,
     joined: &mut Joined,
     problems: &mut Problems,
@@ -100,12 +118,12 @@ fn join_file(
     };
     let empty = || Node { origin: origin.clone(), value: Value::Table(IndexMap::new()) };
     let table = tables
-        .entry(family.to_owned())
+        .entry(family.name().to_owned())
         .or_insert_with(|| Entry { key: origin.clone(), node: empty() });
     // What is no table is reported when the tree is validated.
     let Value::Table(own) = &mut table.node.value else { return };
     for (name, mut entry) in listed {
-        take_texts(&mut entry.node, &Key::of(&[family, &name]), problems);
+        take_texts(&mut entry.node, family, &name, problems);
         if !own.contains_key(&name) {
             own.insert(name.clone(), entry);
             joined.entries.push((family, name));
@@ -114,7 +132,8 @@ fn join_file(
 }
 
 /// Removes the keys of an entry that scenes do not have.
-fn take_texts(node: &mut Node, key: &Key, problems: &mut Problems) {
+fn take_texts(node: &mut Node, family: Family, name: &str, problems: &mut Problems) {
+    let key = Key::of(&[family.name(), name]);
     let Value::Table(entries) = &mut node.value else { return };
     for name in TEXTS {
         let Some(Entry { node, .. }) = entries.shift_remove(name) else { continue };
@@ -122,7 +141,7 @@ fn take_texts(node: &mut Node, key: &Key, problems: &mut Problems) {
             problems.error(&key.field(name), "expected text in quotes").at(&node.origin);
         }
     }
-    if *key.parent().segments() != *Key::of(&["media"]).segments() {
+    if family != Family::Media {
         return;
     }
     let Some(Entry { node, .. }) = entries.shift_remove(RANGE) else { return };

@@ -32,7 +32,7 @@ pub fn measured_sheet(
     let largest_share = most.share.min(1.0);
     let checks = SheetChecks { largest_share, irreversible, reciprocity_error };
     if reciprocity_error > RECIPROCAL {
-        remarks.push(format!("{checks}; both are used as they are"));
+        remarks.push(format!("{checks}; the values are used as they are"));
     }
     let [front, back] = sides;
     Ok((MeasuredSheet { front, back, turn, checks }, remarks))
@@ -179,7 +179,7 @@ fn largest_difference(a: &DirectedTable, b: &DirectedTable) -> f64 {
     differences.fold(0.0, f64::max)
 }
 
-/// What differs most from the paths backwards, and how much, 1.
+/// What differs most from the reversed paths, and how much, 1.
 fn reciprocity([front, back]: &[SheetTables; 2]) -> (&'static str, f64) {
     let pairs = [
         ("reflection by the front", &front.reflection, &front.reflection),

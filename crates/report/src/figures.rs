@@ -57,7 +57,6 @@ pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
     drawn(&map.into(), format!("{}: {}", map.sensor, map_words(map)), mean_words(map))
 }
 
-/// A map under the title of its picture in true colour.
 /// The picture of a map in its own colours; `None` without colours.
 fn in_true_colour(name: &str, map: HeatMap) -> Result<Option<OutputFile>> {
     let Some(colours) = map.cells.colours.clone() else { return Ok(None) };

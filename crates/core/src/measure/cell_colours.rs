@@ -22,8 +22,8 @@ pub(crate) const NONUNIFORMITY: &str = "colour_nonuniformity";
 /// Cells with less than this share of the largest level do not count for the evenness of colours, 1 (IES LM-79-08, section 12.5: angles with
 /// less than 10 % of the peak intensity).
 const LEAST_LEVEL: f64 = 0.1;
-/// Least counts of a map. In n counts there is none of a colour that has one of this many by chance e^(-n/50): by this share the covariance
-/// of a cell is that of all cells.
+/// Fewest counts of a map whose colours have known errors. A colour that makes up one in this many counts is missing from n counts with
+/// probability e^(-n/50); the covariance of all cells takes this share in that of a cell.
 const COLOUR_COUNTS: f64 = 50.0;
 
 /// The sum s = X + 15Y + 3Z that chromaticities u', v' are divided by (CIE 15:2018, eq. 8.2).
@@ -58,8 +58,8 @@ impl CellColours {
 
     /// Those of some stimuli. Standard errors below `rounding`, relative to a sum, 1, are what rounding may cause.
     ///
-    /// A cell with few counts may lack a colour by chance, and so does its own covariance. That of the counts of all cells takes its place, for
-    /// the luminous flux that the cell has, the more so the fewer its counts are.
+    /// A cell with few counts may lack a colour by chance, and then its covariance lacks it too. So the covariance of all cells, scaled to the
+    /// luminous flux of the cell, takes a share, which is larger the fewer the counts are.
     fn new(cells: &[NoisyStimuli], rounding: f64) -> Self {
         let all: DVec3 = cells.iter().map(|own| own.mean).sum();
         let covariance = cells.iter().fold(DMat3::ZERO, |sum, own| sum + own.covariance);
@@ -122,6 +122,9 @@ impl CellColours {
         let Some(brightest) = brightest.filter(|own| own.value > 0.0) else {
             return unknown(Status::NoSignal);
         };
+        if levels.iter().flatten().any(|level| !level.std_error.is_finite()) {
+            return unknown(Status::TooFew);
+        }
         // The cells that count if levels are this many errors higher.
         let counting = |errors: f64| -> Option<Vec<NoisyColour>> {
             let counts = |level: &Option<Noisy>| {
@@ -139,9 +142,12 @@ impl CellColours {
         }
         let found = colour_spread(&colours);
         // Levels have errors as well: what other cells would change is a possible bias.
+        let [Some(fewer), Some(more)] = [-1.0, 1.0].map(counting) else {
+            return unknown(Status::TooFew);
+        };
         let read = denoised_spread(&colours);
-        let others = [-1.0, 1.0].map(|errors| counting(errors).filter(|own| own.len() > 1));
-        let others = others.map(|own| own.map_or(read, |own| denoised_spread(&own)));
+        // There is none where not even the brightest cell counts for certain.
+        let others = [&fewer, &more].map(|own| denoised_spread(own));
         let found = [found.largest, found.rms];
         std::array::from_fn(|place| {
             let own = found[place];

@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn distances_hold_within_their_errors() {
         let trials = 200;
-        for (name, may_hide, field) in fields() {
+        for (name, hides, field) in fields() {
             let mut noise = Noise::of_stream(6);
             let expected = truth_of(&field);
             let (mut held, mut hidden) = ([0, 0], 0);
@@ -308,7 +308,7 @@ mod tests {
             // A normal distribution has 190; a share of 0.95 of 200 is known to 3.
             assert!(held.iter().all(|own| *own >= 180), "{name}: {held:?} of {trials}");
             let is_hidden = hidden > trials / 2;
-            assert_eq!(is_hidden, may_hide, "{name}: {hidden} of {trials}");
+            assert_eq!(is_hidden, hides, "{name}: {hidden} of {trials}");
         }
     }
 

@@ -141,8 +141,7 @@ fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
     values.extend(match &scene.sensors[id.index()].kind {
         SensorKind::Surface(surface) => map::add_colours(evidence, id, surface, &mut maps),
         SensorKind::Goniometer(goniometer) => {
-            // The first is that of all light.
-            let all = intensities.first_mut();
+            let all = intensities.iter_mut().find(|own| own.light.is_none());
             all.map(|own| angular::add_colours(evidence, id, goniometer, own)).unwrap_or_default()
         }
     });

@@ -13,7 +13,7 @@ use crate::luminaire::fields::NumberReader;
 use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::front_table::{FrontTable, problem_of_angles};
 use crate::luminaire::generation::FileGeneration;
-use crate::luminaire::ies_edition::{Edition, SecondNumber};
+use crate::luminaire::ies_edition::{Edition, SecondNumber, WithoutLength};
 use crate::luminaire::ies_words::{WordReader, violated};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::photometric_type::PhotometricType;
@@ -65,7 +65,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         intensities.map_err(|error| error.at_table(LuminaireFormat::Ies, table_line))?;
     let lamps = lamp_flux(lamps, head.lumens_per_lamp, &mut remarks);
     let power_w = known_power(power_w, &mut remarks);
-    let opening = opening(head.size_mm, &mut remarks);
+    let opening = opening(head.size_mm, edition.without_length(), &mut remarks);
     let generation = match head.photometric_type {
         PhotometricType::A | PhotometricType::C => head.generation,
         PhotometricType::B => head.generation.interpolated(),
@@ -299,12 +299,17 @@ fn skip_tilt(numbers: &mut WordReader<'_>) -> Result<(), LuminaireError> {
 
 /// The opening: negative sizes are diameters (LM-63-2002, table 1). A circle has a length of 0 in LM-63-1995, and an ellipse a
 /// positive one.
-fn opening([width, length, height]: [f64; 3], remarks: &mut Vec<String>) -> Opening {
+fn opening(
+    [width, length, height]: [f64; 3],
+    without_length: WithoutLength,
+    remarks: &mut Vec<String>,
+) -> Opening {
     let is_flat = height >= 0.0;
-    let is_round = width < 0.0 && (length < 0.0 || is_flat || length == 0.0);
+    let is_disk_or_ball = is_flat || without_length == WithoutLength::Sphere && length == 0.0;
+    let is_round = width < 0.0 && (length < 0.0 || is_disk_or_ball);
     if !is_flat || (length < 0.0 && width >= 0.0) {
         let shape = "is a sphere, a cylinder that lies or a disk that stands";
-        let taken = "its light is taken to start on an upright cylinder or box of its sizes";
+        let taken = "it is read as an upright cylinder or box of its sizes";
         remarks.push(format!("the opening {shape}; {taken}"));
     }
     let [width, length] = [width.abs(), length.abs()];

@@ -7,8 +7,10 @@ pub(crate) enum Edition {
     First,
     /// 1991.
     Second,
-    /// 1995 and 2002.
+    /// 1995.
     Third,
+    /// 2002.
+    Fourth,
     /// 2019.
     Latest,
 }
@@ -21,8 +23,10 @@ impl Edition {
             Self::Second
         } else if line.contains("LM-63-2019") {
             Self::Latest
-        } else if line.contains("LM-63-") && !line.contains("LM-63-1986") {
+        } else if line.contains("LM-63-1995") {
             Self::Third
+        } else if line.contains("LM-63-") && !line.contains("LM-63-1986") {
+            Self::Fourth
         } else {
             Self::First
         }
@@ -37,10 +41,18 @@ impl Edition {
                 "no line names the edition of LM-63; it is read as LM-63-1986, of which the number after the ballast factor is a factor"
                     .to_owned(),
             ),
-            Self::Third if !is_named(&["LM-63-1995", "LM-63-2002"]) => {
+            Self::Fourth if !is_named(&["LM-63-2002"]) => {
                 Some(format!("the edition in `{line}` is not known; it is read as LM-63-2002"))
             }
-            Self::First | Self::Second | Self::Third | Self::Latest => None,
+            Self::First | Self::Second | Self::Third | Self::Fourth | Self::Latest => None,
+        }
+    }
+
+    /// What an opening with negative width and height and no length is.
+    pub(crate) fn without_length(self) -> WithoutLength {
+        match self {
+            Self::First | Self::Second | Self::Third => WithoutLength::Sphere,
+            Self::Fourth | Self::Latest => WithoutLength::StandingDisk,
         }
     }
 
@@ -48,7 +60,7 @@ impl Edition {
     pub(crate) fn second_number(self) -> SecondNumber {
         match self {
             Self::First | Self::Second => SecondNumber::Factor,
-            Self::Third => SecondNumber::Unused,
+            Self::Third | Self::Fourth => SecondNumber::Unused,
             Self::Latest => SecondNumber::Generation,
         }
     }
@@ -63,4 +75,11 @@ pub(crate) enum SecondNumber {
     Unused,
     /// How the file was made.
     Generation,
+}
+
+/// What an opening with negative width and height and no length is (LM-63-1995 and LM-63-2002, table 1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum WithoutLength {
+    Sphere,
+    StandingDisk,
 }

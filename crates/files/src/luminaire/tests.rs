@@ -169,6 +169,19 @@ fn planes_that_a_format_cannot_name_are_written_without_symmetry() {
 }
 
 #[test]
+fn an_opening_without_length_is_a_sphere_in_1995_and_a_standing_disk_later() {
+    let text = LAMBERT.replace("0.05 0.08 0", "-0.05 0 -0.05");
+    for (edition, is_round, along_c0_mm) in
+        [("IESNA:LM-63-1995", true, 50.0), ("IESNA:LM-63-2002", false, 0.0)]
+    {
+        let rest = text.split_once('\n').unwrap().1;
+        let opening = ies(&format!("{edition}\n{rest}")).unwrap().luminaire.opening;
+        let expected = Opening { is_round, along_c0_mm, along_c90_mm: 50.0, height_mm: 50.0 };
+        assert_eq!(opening, expected, "{edition}");
+    }
+}
+
+#[test]
 fn what_contradicts_itself_or_is_lost_is_remarked_on() {
     let remarks = |old: &str, new: &str| {
         let text = LAMBERT.replace(old, new);

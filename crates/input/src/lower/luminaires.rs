@@ -112,9 +112,10 @@ impl Context<'_> {
             return (Emitter::Point(frame), ZENITH);
         }
         let [half_x, half_y] = [along_c0_mm, along_c90_mm].map(|size| 0.5 * size);
-        let round = match half_x == half_y {
-            true => Region::Annulus { inner: 0.0, outer: half_x },
-            false => Region::Ellipse { half_x, half_y },
+        let round = if half_x == half_y {
+            Region::Annulus { inner: 0.0, outer: half_x }
+        } else {
+            Region::Ellipse { half_x, half_y }
         };
         let is_ellipse = is_round && half_x != half_y;
         if is_ellipse && height_mm > 0.0 {

@@ -55,7 +55,7 @@ pub struct SceneSpec {
     /// Folder of your own library, relative to this file, with `media.toml`, `finishes.toml` and `emissions.toml` or some of them. An entry `[NAME]`
     /// has the keys of `media.NAME`, `finishes.NAME` or `emissions.NAME`, and may have the texts `description`, `source` and `licence`, a medium also
     /// `range_nm`, which are for readers. Entries of the scene replace those of the folder of the same name, and these replace those that
-    /// `lumiduct library` lists.
+    /// `lumiduct library` lists. The hash of the scene contains these files as they are.
     pub library: Option<String>,
     /// Name of the medium outside every solid.
     #[serde(default = "air")]

@@ -55,7 +55,10 @@ fn colours_of_few_counts_lie_within_their_errors() {
         }
         // A normal distribution has 0.954; a share of 300 is known to 0.015.
         let held = held.map(|own| own / known);
-        assert!(held.iter().all(|own| *own > 0.9), "{cells} of {counts}: {held:?} of {known}");
+        assert!(
+            held.iter().all(|own| (0.9..0.985).contains(own)),
+            "{cells} of {counts}: {held:?} of {known}"
+        );
     }
 }
 
@@ -126,4 +129,26 @@ fn cells_whose_level_is_in_doubt_add_to_the_bias() {
             assert_eq!(own.bias.is_some_and(|own| own > 0.3 * apart), bias, "{own:?}");
         }
     }
+}
+
+#[test]
+fn cells_in_doubt_may_leave_a_single_one_or_one_of_unknown_colour() {
+    let mut noise = Noise::of_stream(6);
+    let (blue, red) = ([(450.0, 1.0)], [(610.0, 1.0)]);
+    let read = [&red, &blue].map(|of| drawn(of, 1e5, &mut noise));
+    let mut in_doubt = levels(&[1.0, 0.105]);
+    in_doubt[1] = Some(Noisy { value: 0.105, std_error: 0.01, count: 0.0 });
+    // The distance may not exist at all.
+    for own in CellColours::new(&read, 0.0).distances(&in_doubt) {
+        assert!(own.bias.unwrap() > 0.9 * own.value, "{own:?}");
+    }
+    let dim = [&red, &red, &blue].map(|of| drawn(of, 1e5, &mut noise));
+    let few = [dim[0], dim[1], drawn(&blue, 2.0, &mut noise)];
+    let mut in_doubt = levels(&[1.0, 0.9, 0.095]);
+    in_doubt[2] = Some(Noisy { value: 0.095, std_error: 0.01, count: 0.0 });
+    let found = CellColours::new(&few, 0.0).distances(&in_doubt);
+    assert!(found.iter().all(|own| own.status == Status::TooFew), "{found:?}");
+    in_doubt[2] = Some(Noisy { value: 0.105, std_error: f64::INFINITY, count: 0.0 });
+    let found = CellColours::new(&dim, 0.0).distances(&in_doubt);
+    assert!(found.iter().all(|own| own.status == Status::TooFew), "{found:?}");
 }

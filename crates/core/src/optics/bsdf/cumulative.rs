@@ -125,6 +125,7 @@ mod tests {
         assert_eq!(rows.sample(0, 1.0 - 1e-17).0, 3);
         assert_eq!(rows.sample(1, 0.5), (0, 0.5));
     }
+
     #[test]
     fn runs_of_equal_columns_are_the_columns() {
         let weights = vec![vec![0.0, 0.0, 2.0, 2.0, 2.0, 0.5, 0.0, 1.0, 1.0], vec![3.0; 5], vec![]];

@@ -89,7 +89,7 @@ impl DirectedTable {
         if self.is_reversed { [turned(leaving), turned(incident)] } else { [incident, leaving] }
     }
 
-    /// Root mean square of the difference from another table with all paths backwards, over that of the values, 1: 0 where
+    /// Root mean square of the difference from another table with all paths reversed, over that of the values, 1: 0 where
     /// light is reciprocal, if the other one is that of the side where light of this one arrives. 0 without light.
     pub fn reciprocity_error(&self, other: &Self) -> f64 {
         let [incident, leaving] = self.directions();
@@ -199,7 +199,7 @@ pub struct MeasuredSheet {
 pub struct SheetChecks {
     /// The largest share of light from a direction that leaves, 1.
     pub largest_share: f64,
-    /// What differs most from the paths backwards: `transmission`.
+    /// What differs most from the reversed paths: `transmission`.
     pub irreversible: &'static str,
     /// Root mean square of that difference, relative to that of the values, 1.
     pub reciprocity_error: f64,
@@ -213,10 +213,10 @@ impl fmt::Display for SheetChecks {
             let (what, error) = (self.irreversible, format_percent(self.reciprocity_error));
             write!(
                 f,
-                "over its patches, its {what} differs from that of the paths backwards by {error} (rms)"
+                "averaged over its patches, its {what} differs from that of the reversed paths by {error} (rms)"
             )
         } else {
-            f.write_str("its values are the same for the paths backwards")
+            f.write_str("its values are reciprocal")
         }
     }
 }

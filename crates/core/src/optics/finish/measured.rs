@@ -317,6 +317,7 @@ mod tests {
             assert!(BsdfTable::new(patches.clone(), &values).is_none());
         }
     }
+
     #[test]
     fn reciprocity_is_that_of_all_pairs_of_directions() {
         let sheets = sheets();

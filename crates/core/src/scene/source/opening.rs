@@ -188,17 +188,25 @@ mod tests {
     fn starts_are_uniform_over_what_is_seen() {
         for opening in openings() {
             let dir = frame().to_world(DVec3::new(-0.6, 0.48, -0.64));
-            // Places across the line of sight, as seen from the middle, and their mean squares by the share of each face.
+            // Places across the line of sight, from the middle, and squares of places along both axes of each flat face.
             let across = Frame::from_axis(opening.frame().origin, dir);
             let whole = opening.projected_area(dir);
             let mut counts = vec![0.0; opening.shapes().len()];
             let mut places = [Tally::default(), Tally::default()];
+            let mut squares = vec![[Tally::default(); 2]; opening.shapes().len()];
             let starts = 20_000;
             for index in 0..starts {
                 let (face, point) = opening.start(dir, &mut Sampler::for_path(3, 0, index));
                 let normal = opening.shapes()[face].0.normal(point);
                 assert!(normal.dot(dir) > -1e-12, "{opening:?} starts on its far side");
                 counts[face] += 1.0 / starts as f64;
+                if let Some(flat) = opening.shapes()[face].0.as_flat() {
+                    let own = flat.frame().point_to_local(point);
+                    [own.x, own.y]
+                        .iter()
+                        .zip(&mut squares[face])
+                        .for_each(|(x, sum)| sum.add(x * x));
+                }
                 let seen = across.point_to_local(point);
                 [seen.x, seen.y].into_iter().zip(&mut places).for_each(|(x, tally)| tally.add(x));
             }
@@ -209,6 +217,22 @@ mod tests {
                     (found - share).abs() <= 4.0 * error + 1e-9,
                     "{opening:?}: {found} {share}"
                 );
+            }
+            for ((shape, _), squares) in opening.shapes().iter().zip(squares) {
+                let Some(flat) = shape.as_flat() else { continue };
+                let expected = match *flat.region() {
+                    Region::Rectangle { half_x, half_y } => [half_x, half_y].map(|a| a * a / 3.0),
+                    Region::Ellipse { half_x, half_y } => [half_x, half_y].map(|a| a * a / 4.0),
+                    Region::Annulus { outer, .. } => [0.25 * outer * outer; 2],
+                    _ => unreachable!("openings have no other faces"),
+                };
+                for (square, expected) in squares.iter().zip(expected) {
+                    let is_seen = projected(shape, dir) > 0.0;
+                    assert!(
+                        !is_seen || square.sigmas_from(expected).abs() < 4.5,
+                        "{shape:?}: {square:?}"
+                    );
+                }
             }
             // The outline is symmetric about the middle.
             for place in places {

@@ -143,6 +143,16 @@ pub(crate) fn measures(text: &str, way: Way) -> Measures {
     measure::measure(&job.scene, &findings)
 }
 
+/// All measures of a run of a number of paths.
+pub(crate) fn measures_of_paths(text: &str, way: Way, paths: u64) -> Measures {
+    let job = traced::load(text, &Settings { paths: Some(paths), ..way.settings() });
+    let mut run = Run::new(&job.scene, &job.run);
+    while !run.is_complete() {
+        run.next_wave();
+    }
+    measure::measure(&job.scene, &run.findings())
+}
+
 /// What may pass beyond noise: the reported bias of a measure, up to a share of its expected value.
 pub(crate) fn bias_allowance(found: &Measure, expected: f64) -> f64 {
     found.bias.unwrap_or(0.0).min(MOST_BIAS * expected.abs())

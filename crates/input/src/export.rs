@@ -73,17 +73,23 @@ impl LuminaireExport {
         let Some((goniometer, radius)) = goniometer.and_then(|own| Some((own, own.radius?))) else {
             return Vec::new();
         };
-        let (beside, size) = match self.opening.map(|opening| largest_dimension(&opening)) {
-            Some(size) => {
-                let ratio = format_value(radius / size);
-                (format!(", {ratio} times the largest dimension of the opening"), "that dimension")
+        let ratio = self.opening.map(|opening| radius / largest_dimension(&opening));
+        let beside = ratio.map_or(String::new(), |ratio| {
+            let ratio = format_value(ratio);
+            format!(", {ratio} times the largest dimension of the luminous opening")
+        });
+        let caution = match ratio {
+            Some(ratio) if ratio >= LEAST_DISTANCE => {
+                "the far field of a narrow beam may still differ".to_owned()
             }
-            None => (String::new(), "the largest dimension of the luminous opening"),
+            Some(_) => format!("those of the far field need {LEAST_DISTANCE} times or more"),
+            None => format!(
+                "those of the far field need {LEAST_DISTANCE} times the largest dimension of the luminous opening or more"
+            ),
         };
         let distance = format_value(radius);
         let mut remarks = vec![format!(
-            "its files have the intensities at a distance of {distance} mm{beside}; they equal those of the far field only if \
-                the distance is at least {LEAST_DISTANCE} times {size}, or more for narrow beams"
+            "its files have the intensities at a distance of {distance} mm{beside}; {caution}"
         )];
         if !scene.lies_within(goniometer.frame.origin, radius) {
             remarks.push(

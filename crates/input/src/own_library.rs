@@ -80,7 +80,10 @@ pub(crate) fn join(
     let folder = base.unwrap_or(Path::new("")).join(folder);
     let key = Key::of(&[LIBRARY]);
     if !folder.is_dir() {
-        problems.error(&key, format!("{}: no such folder", folder.display())).at(&origin);
+        problems
+            .error(&key, format!("{}: no such folder", folder.display()))
+            .at(&origin)
+            .hint("a path is relative to the folder of this file");
         return (joined, breaks);
     }
     let mut missing = 0;

@@ -3,7 +3,7 @@
 use lumiduct_base::math::common_directions;
 use lumiduct_base::number::{format_fixed, format_percent};
 use lumiduct_core::optics::{
-    BsdfTable, DirectedTable, MeasuredSheet, SheetChecks, SheetSide, SheetTables,
+    BsdfTable, DirectedTable, MeasuredSheet, SheetChecks, SheetPart, SheetSide, SheetTables,
 };
 use lumiduct_files::scatter::{BsdfMatrix, ScatterFile, ScatterSide};
 
@@ -27,11 +27,11 @@ pub fn measured_sheet(
     let most = LargestShare::of(&sides);
     let sides = conserving(sides, &most, &mut remarks)
         .map_err(|problem| format!("line {}: {problem}", most.line(lines)))?;
-    let (irreversible, reciprocity_error) = reciprocity(&sides);
+    let irreversible = least_reversible(&sides);
     // Scaled down where it was more.
     let largest_share = most.share.min(1.0);
-    let checks = SheetChecks { largest_share, irreversible, reciprocity_error };
-    if reciprocity_error > RECIPROCAL {
+    let checks = SheetChecks { largest_share, irreversible };
+    if irreversible.is_some_and(|(_, error)| error > RECIPROCAL) {
         remarks.push(format!("{checks}; the values are used as they are"));
     }
     let [front, back] = sides;
@@ -180,16 +180,16 @@ fn largest_difference(a: &DirectedTable, b: &DirectedTable) -> f64 {
 }
 
 /// What differs most from the reversed paths, and how much, 1.
-fn reciprocity([front, back]: &[SheetTables; 2]) -> (&'static str, f64) {
+fn least_reversible([front, back]: &[SheetTables; 2]) -> Option<(SheetPart, f64)> {
     let pairs = [
-        ("reflection by the front", &front.reflection, &front.reflection),
-        ("reflection by the back", &back.reflection, &back.reflection),
-        ("transmission", &front.transmission, &back.transmission),
+        (SheetPart::FrontReflection, &front.reflection, &front.reflection),
+        (SheetPart::BackReflection, &back.reflection, &back.reflection),
+        (SheetPart::Transmission, &front.transmission, &back.transmission),
     ];
-    let errors = pairs.into_iter().filter_map(|(what, table, backwards)| {
+    let errors = pairs.into_iter().filter_map(|(part, table, backwards)| {
         let (table, backwards) = (table.as_ref()?, backwards.as_ref()?);
         // A reverse is reciprocal.
-        (!table.is_reverse_of(backwards)).then(|| (what, table.reciprocity_error(backwards)))
+        (!table.is_reverse_of(backwards)).then(|| (part, table.reciprocity_error(backwards)))
     });
-    errors.fold(("", 0.0), |most, own| if own.1 > most.1 { own } else { most })
+    errors.max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -195,7 +195,8 @@ fn texts(
     std_errors: &Array2<f64>,
 ) -> Vec<(String, String)> {
     let distance = distance_mm.map(|distance| format!("{} mm", format_value(distance)));
-    let beside = distance.as_ref().map_or(String::new(), |distance| format!(", at {distance}"));
+    // Formats may cut a text: what it means comes before names.
+    let before = distance.as_ref().map_or(String::new(), |distance| format!("at {distance}, "));
     let error = std_errors.iter().copied().fold(0.0, f64::max);
     let error = error.is_finite().then(|| format_value(error));
     let LuminaireOrigin { title, hash, date, version } = *origin;
@@ -203,7 +204,7 @@ fn texts(
         format!("intensities: illuminance at a distance of {distance} times distance squared")
     });
     let own = [
-        ("TEST", Some(format!("scene {hash}, sensor {}{beside}", export.sensor))),
+        ("TEST", Some(format!("scene {hash}, {before}sensor {}", export.sensor))),
         ("TESTLAB", Some(format!("computed by Lumiduct {version}, not measured"))),
         ("ISSUEDATE", date.map(str::to_owned)),
         ("LUMINAIRE", Some(title.to_owned())),

@@ -19,7 +19,7 @@ pub mod sun;
 mod volume;
 
 pub use angle_table::AngleTable;
-pub use bsdf::sheet::{DirectedTable, MeasuredSheet, SheetChecks, SheetSide, SheetTables};
+pub use bsdf::sheet::{DirectedTable, MeasuredSheet, SheetChecks, SheetPart, SheetSide, SheetTables};
 pub use bsdf::table::BsdfTable;
 pub use dispersion::{AbsorptionLaw, IndexLaw, REFERENCE_WAVELENGTH};
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};

@@ -59,10 +59,8 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
 
     let head = read_head(&mut numbers, edition, &mut remarks)?;
     let Head { lamps, power_w, .. } = head;
-    let mut table_line = numbers.next_line();
-    let intensities = read_intensities(&mut numbers, &head, (&mut table_line, &mut remarks));
-    let intensities =
-        intensities.map_err(|error| error.at_table(LuminaireFormat::Ies, table_line))?;
+    let LocatedTable { line: table_line, of: intensities } =
+        read_intensities(&mut numbers, &head, &mut remarks)?;
     let lamps = lamp_flux(lamps, head.lumens_per_lamp, &mut remarks);
     let power_w = known_power(power_w, &mut remarks);
     let opening = opening(head.size_mm, edition.without_length(), &mut remarks);
@@ -83,18 +81,35 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     Ok(ReadLuminaire::new(luminaire, table_line, remarks))
 }
 
-/// Reads the angles and the intensities, and gives them over C planes; notes the line of the first intensity, and remarks.
+/// What a table of intensities says, and the line of its first one.
+struct LocatedTable<T> {
+    line: usize,
+    of: T,
+}
+
+impl<T> LocatedTable<T> {
+    fn map<U>(
+        self,
+        meaning: impl FnOnce(T) -> Result<U, LuminaireError>,
+    ) -> Result<LocatedTable<U>, LuminaireError> {
+        let Self { line, of } = self;
+        let of = meaning(of).map_err(|error| error.at_table(LuminaireFormat::Ies, line))?;
+        Ok(LocatedTable { line, of })
+    }
+}
+
+/// Reads the angles and the intensities, and gives them over C planes; notes remarks.
 fn read_intensities(
     numbers: &mut WordReader<'_>,
     head: &Head,
-    (table_line, remarks): (&mut usize, &mut Vec<String>),
-) -> Result<Intensities, LuminaireError> {
+    remarks: &mut Vec<String>,
+) -> Result<LocatedTable<Intensities>, LuminaireError> {
     match head.photometric_type {
         PhotometricType::A => {
-            type_a::over_c_planes(&read_front(numbers, head, table_line)?, remarks)
+            read_front(numbers, head)?.map(|table| type_a::over_c_planes(&table, remarks))
         }
         PhotometricType::B => {
-            type_b::over_c_planes(&read_front(numbers, head, table_line)?, remarks)
+            read_front(numbers, head)?.map(|table| type_b::over_c_planes(&table, remarks))
         }
         PhotometricType::C => {
             let angles_deg = numbers.angles(head.angles, "a vertical angle")?;
@@ -107,12 +122,13 @@ fn read_intensities(
             }
             let (symmetry, planes_deg) =
                 symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
-            let mut candela = read_values(numbers, head, table_line)?;
-            remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, remarks);
-            candela.truncate(planes_deg.len() * angles_deg.len());
-            let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
-            remarks.extend(pole_remarks(&intensities));
-            Ok(intensities)
+            read_values(numbers, head)?.map(|mut candela| {
+                remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, remarks);
+                candela.truncate(planes_deg.len() * angles_deg.len());
+                let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+                remarks.extend(pole_remarks(&intensities));
+                Ok(intensities)
+            })
         }
     }
 }
@@ -121,29 +137,27 @@ fn read_intensities(
 fn read_front(
     numbers: &mut WordReader<'_>,
     head: &Head,
-    table_line: &mut usize,
-) -> Result<FrontTable, LuminaireError> {
+) -> Result<LocatedTable<FrontTable>, LuminaireError> {
     let vertical_deg = numbers.angles(head.angles, "a vertical angle")?;
     let horizontal_deg = numbers.angles(head.planes, "a horizontal angle")?;
     if let Some(problem) = problem_of_angles(&horizontal_deg, &vertical_deg) {
         return Err(numbers.wrong(problem));
     }
-    let candela = read_values(numbers, head, table_line)?;
-    Ok(FrontTable::new(horizontal_deg, vertical_deg, candela))
+    read_values(numbers, head)?
+        .map(|candela| Ok(FrontTable::new(horizontal_deg, vertical_deg, candela)))
 }
 
-/// Reads the intensities, which end the file, cd, and notes the line of the first.
+/// Reads the intensities, which end the file, cd.
 fn read_values(
     numbers: &mut WordReader<'_>,
     head: &Head,
-    table_line: &mut usize,
-) -> Result<Vec<f64>, LuminaireError> {
+) -> Result<LocatedTable<Vec<f64>>, LuminaireError> {
     let &Head { angles, planes, factor, .. } = head;
-    *table_line = numbers.next_line();
+    let line = numbers.next_line();
     let mut candela = numbers.intensities(planes * angles)?;
     numbers.end([planes, angles])?;
     candela.iter_mut().for_each(|value| *value *= factor);
-    Ok(candela)
+    Ok(LocatedTable { line, of: candela })
 }
 
 /// The numbers before the angles.

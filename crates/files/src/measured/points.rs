@@ -94,7 +94,7 @@ pub(super) fn nearest(lines: &[f64], at: f64) -> usize {
     if is_below { above - 1 } else { above }
 }
 
-/// Edges of cells around middles, of which there are two at least: halfway between them.
+/// Edges of cells: halfway between their middles, of which there are at least two.
 pub(super) fn edges(middles: &[f64]) -> Vec<f64> {
     let last = middles.len() - 1;
     let between = middles.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));

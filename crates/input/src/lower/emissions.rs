@@ -12,7 +12,8 @@ impl Context<'_> {
             self.spec.emissions.keys().filter(|name| EMISSION_WORDS.contains(&name.as_str()))
         {
             let message = format!("the name `{name}` is taken by a kind of emission");
-            self.problems.certain_error(&Key::of(&["emissions", name]), message);
+            let key = Key::of(&["emissions", name]);
+            self.problems.certain_error(&key, message).hint("give it another name");
         }
     }
 

@@ -2,7 +2,7 @@ use super::*;
 use crate::colour::colour_matching;
 use crate::measure::noise::Noise;
 
-/// Wavelengths and shares of the counts, 1: a die of which a twentieth of the light is, and its phosphor.
+/// The light of a white LED: wavelengths, nm, and shares of the counts; a twentieth comes from the blue die.
 const WHITE: [(f64, f64); 3] = [(450.0, 0.05), (550.0, 0.6), (610.0, 0.35)];
 const TRIALS: u32 = 300;
 

@@ -148,7 +148,7 @@ impl DirectedTable {
     }
 }
 
-/// Values of a table between given directions, each of which is found once.
+/// Values of a table for all pairs of given directions; each direction is looked up once.
 struct PairValues<'a> {
     table: &'a DirectedTable,
     /// Of arriving and of leaving light.
@@ -194,29 +194,50 @@ pub struct MeasuredSheet {
     pub checks: SheetChecks,
 }
 
+/// What paths through a sheet may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SheetPart {
+    /// Reflection by the front.
+    FrontReflection,
+    /// Reflection by the back.
+    BackReflection,
+    /// Transmission, both ways.
+    Transmission,
+}
+
+impl SheetPart {
+    fn name(self) -> &'static str {
+        match self {
+            Self::FrontReflection => "reflection by the front",
+            Self::BackReflection => "reflection by the back",
+            Self::Transmission => "transmission",
+        }
+    }
+}
+
 /// What checks of energy and reciprocity find of the tables of a sheet.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SheetChecks {
     /// The largest share of light from a direction that leaves, 1.
     pub largest_share: f64,
-    /// What differs most from the reversed paths: `transmission`.
-    pub irreversible: &'static str,
-    /// Root mean square of that difference, relative to that of the values, 1.
-    pub reciprocity_error: f64,
+    /// What differs most from the reversed paths, and the root mean square of the difference relative to that of the
+    /// values, 1; `None` where paths are exactly reversible.
+    pub irreversible: Option<(SheetPart, f64)>,
 }
 
 impl fmt::Display for SheetChecks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let largest = format_percent(self.largest_share);
         write!(f, "at most {largest} of the light from a direction leaves; ")?;
-        if self.reciprocity_error > ROUNDING {
-            let (what, error) = (self.irreversible, format_percent(self.reciprocity_error));
-            write!(
-                f,
-                "averaged over its patches, its {what} differs from that of the reversed paths by {error} (rms)"
-            )
-        } else {
-            f.write_str("its values are reciprocal")
+        match self.irreversible.filter(|(_, error)| *error > ROUNDING) {
+            Some((part, error)) => {
+                let (part, error) = (part.name(), format_percent(error));
+                write!(
+                    f,
+                    "averaged over its patches, its {part} differs from that of the reversed paths by {error} (rms)"
+                )
+            }
+            None => f.write_str("its values are reciprocal"),
         }
     }
 }

@@ -8,7 +8,7 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its result")]
 
 use glam::DVec3;
-use lumiduct_core::optics::{Finish, FinishModel, Incidence, Spread};
+use lumiduct_core::optics::{Finish, FinishModel, Incidence, REFERENCE_WAVELENGTH, Spread};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{FaceArea, Ray, Scene, SensorKind, SourceId, StartSurfaces};
@@ -84,8 +84,14 @@ fn joined(
     if cos_wall <= 0.0 || cos_cell <= 0.0 {
         return 0.0;
     }
-    let incidence =
-        Incidence { dir: vertex.dir, normal, index_from: 1.0, index_to: 1.0, grain: DVec3::ZERO };
+    let incidence = Incidence {
+        dir: vertex.dir,
+        normal,
+        index_from: 1.0,
+        index_to: 1.0,
+        wavelength: REFERENCE_WAVELENGTH,
+        grain: DVec3::ZERO,
+    };
     let value = wall.evaluate(&incidence, dir);
     if value == 0.0 {
         return 0.0;

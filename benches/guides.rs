@@ -124,7 +124,7 @@ pub(crate) fn rod_scene(rod: &Rod) -> Scene {
 /// The scene of a rod whose faces are triangles; a sensor on the exit, and the far field.
 pub(crate) fn mesh_scene(rod: &Rod, mesh: Mesh) -> Scene {
     let (mut builder, solid) = with_rod(rod);
-    let finishes = vec![None; mesh.face_names().count()];
+    let finishes = vec![[None; 2]; mesh.face_names().count()];
     let faces = builder.add_mesh("rod", solid, mesh, &finishes);
     let exit =
         faces.into_iter().find(|face| builder.scene().faces[face.index()].name == "rod.exit");

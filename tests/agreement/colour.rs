@@ -28,6 +28,49 @@ fn a_lamp_before_a_rod_that_disperses_light() {
     all_agree("lamp with a spectrum", &coloured_rod(&lamp));
 }
 
+/// Each path meets layers at its own wavelength.
+#[test]
+fn a_lamp_before_a_dichroic_rod() {
+    let lamp = format!(
+        "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\n{COLD}\nat = {{ position_mm = [0, 0, -1] }}"
+    );
+    let pair = "{ index = { cauchy = [2.2, 0.03, 0.0] }, thickness_nm = 48 }, { index = 1.46, thickness_nm = 77 }";
+    let filter = format!(
+        "faces = {{ entry = \"filter\", exit = \"filter\" }}\n[finishes.filter.stack]\nlayers = [{pair}, {pair}, {pair}]\n[finishes.mirror]"
+    );
+    all_agree("dichroic rod", &coloured_rod(&lamp).replace("[finishes.mirror]", &filter));
+}
+
+/// A film in air transmits 1/(1 + F sin²(2π n d/λ)) of a normal beam, F = ((n² - 1)/(2n))² (Born & Wolf, 7th ed., 7.6.1).
+#[test]
+fn lines_pass_a_film_by_their_wavelengths() {
+    let lines = [450.0, 600.0];
+    let beam = |nm: f64| {
+        format!(
+            "[sources.line_{nm}.disk]\nradius_mm = 1\nflux_lm = 1\nemission = \"collimated\"\nspectrum = {{ line_nm = {nm} }}\n"
+        )
+    };
+    let text = lines.map(beam).concat()
+        + r#"
+[finishes.film.stack]
+layers = [{ index = 2.3, thickness_nm = 300 }]
+[sheets.film.disk]
+radius_mm = 3
+finish = "film"
+at = { position_mm = [0, 0, 2] }
+[sensors]
+beyond = { plane = { disk = { radius_mm = 3 } }, at = { position_mm = [0, 0, 4], axis = [0, 0, -1] } }
+"#;
+    let found = measures(&text, Way::Forward);
+    for nm in lines {
+        let phase = 2.0 * PI * 2.3 * 300.0 / nm;
+        let expected = 1.0 / (1.0 + (4.29f64 / 4.6).powi(2) * phase.sin().powi(2));
+        let own = &found.values[&format!("beyond.efficiency.from.line_{nm}")];
+        let error = 4.0 * own.std_error + 1e-4;
+        assert!((own.value - expected).abs() < error && error < 0.02, "{nm}: {own:?}, {expected}");
+    }
+}
+
 /// Their spectra hardly overlap, and one is a line: a gather path of some wavelength sees few of them.
 #[test]
 fn lamps_of_several_colours() {

@@ -237,6 +237,21 @@ fn shares_by_the_angle() {
     all_agree("coated glass", &block(COATING));
 }
 
+/// High and low index, and a thin metal.
+const STACK: &str = "{ stack = { layers = [{ index = 2.3, thickness_nm = 60 }, { index = 1.46, thickness_nm = 120 }, { index = 0.96, extinction = 6.7, thickness_nm = 8 }], wavelength_nm = 550 } }";
+
+#[test]
+fn stacks_of_layers() {
+    all_agree("glass with layers", &block(STACK));
+    all_agree("tube of layers", &tube(STACK));
+    all_agree(
+        "antireflective glass",
+        &block(
+            "{ stack = { layers = [{ index = 1.38, thickness_nm = 100 }], wavelength_nm = 550 } }",
+        ),
+    );
+}
+
 #[test]
 fn small_facets() {
     all_agree("glass of fine facets", &block("{ ggx = { roughness = 0.02 } }"));

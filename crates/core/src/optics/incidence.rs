@@ -16,6 +16,8 @@ pub struct Incidence {
     pub index_from: f64,
     /// Refractive index of the medium behind the face.
     pub index_to: f64,
+    /// Wavelength of the light, nm.
+    pub wavelength: f64,
     /// Unit direction of the grain of a finish along the face; zero for finishes without grain.
     pub grain: DVec3,
 }

@@ -2,10 +2,11 @@
 //!
 //! This layer does not know scenes, paths or sensors. Directions and normals are in the coordinates of the
 //! scene. Media take a wavelength, so that dispersion needs no other interface; finishes take the refractive
-//! indices of both sides.
+//! indices of both sides, and the wavelength.
 
 mod angle_table;
 mod bsdf;
+mod coating;
 mod dispersion;
 pub mod film;
 mod finish;
@@ -19,8 +20,11 @@ pub mod sun;
 mod volume;
 
 pub use angle_table::AngleTable;
-pub use bsdf::sheet::{DirectedTable, MeasuredSheet, SheetChecks, SheetPart, SheetSide, SheetTables};
+pub use bsdf::sheet::{
+    DirectedTable, MeasuredSheet, SheetChecks, SheetPart, SheetSide, SheetTables,
+};
 pub use bsdf::table::BsdfTable;
+pub use coating::{LayerStack, ThinLayer};
 pub use dispersion::{AbsorptionLaw, IndexLaw, REFERENCE_WAVELENGTH};
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use finish::Finish;

@@ -124,14 +124,14 @@ impl Builder {
         face
     }
 
-    /// Adds a closed mesh as the boundary of a solid. `finishes` has an entry for each of its
+    /// Adds a closed mesh as the boundary of a solid. `finishes` has those outside and inside of each of its
     /// faces; a face's name is `prefix` followed by its name in the mesh.
     pub fn add_mesh(
         &mut self,
         prefix: &str,
         solid: SolidId,
         mesh: Mesh,
-        finishes: &[Option<FinishId>],
+        finishes: &[[Option<FinishId>; 2]],
     ) -> Vec<FaceId> {
         let owner = Owner::Solid(solid);
         let triangles = 0..mesh.triangle_count();
@@ -140,12 +140,12 @@ impl Builder {
             triangles.fold(Aabb::EMPTY, |sum, triangle| sum.union(mesh.bounds(triangle))),
         );
         let first_face = self.scene.faces.len();
-        for (index, (name, finish)) in mesh.face_names().zip(finishes).enumerate() {
+        for (index, (name, [front, back])) in mesh.face_names().zip(finishes).enumerate() {
             self.scene.faces.push(Face {
                 name: format!("{prefix}.{name}"),
                 owner,
-                front: *finish,
-                back: *finish,
+                front: *front,
+                back: *back,
                 patterns: Vec::new(),
                 extent: PieceRange::Mesh { mesh: self.scene.meshes.len(), face: index },
             });

@@ -25,6 +25,15 @@ pub(crate) enum Scope {
     Scene,
 }
 
+/// Where a layer has values by wavelength, nm.
+#[derive(Debug)]
+pub(super) struct LayerTable {
+    pub(super) key: Key,
+    pub(super) range: [f64; 2],
+    /// The wavelength at which its stack acts on all light, nm; `None` for that of each path.
+    pub(super) wavelength: Option<f64>,
+}
+
 /// Everything that the topics share.
 pub(super) struct Context<'a> {
     pub(super) spec: &'a SceneSpec,
@@ -39,6 +48,8 @@ pub(super) struct Context<'a> {
     pub(super) named_finishes: IndexMap<String, Option<Finish>>,
     /// The back of finishes, as far as it was requested.
     pub(super) behind: IndexMap<FinishId, FinishId>,
+    /// Tables by wavelength of the layers of finishes.
+    pub(super) layer_tables: Vec<LayerTable>,
     /// Faces by dotted name; a name such as `duct.wall` may refer to several.
     pub(super) faces: IndexMap<String, Vec<FaceId>>,
     /// The spectrum of the source that is lowered.
@@ -68,6 +79,7 @@ impl<'a> Context<'a> {
             finishes: IndexMap::new(),
             named_finishes: IndexMap::new(),
             behind: IndexMap::new(),
+            layer_tables: Vec::new(),
             faces: IndexMap::new(),
             spectrum: None,
             members: Vec::new(),

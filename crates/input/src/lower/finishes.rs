@@ -99,7 +99,7 @@ impl<'a> Context<'a> {
         faces.iter().map(|(face, of)| (face.as_str(), self.finish(of, &key.field(face)))).collect()
     }
 
-    /// The finish that light from behind meets: a different one for films and scatter files.
+    /// The finish that light from behind meets: a different one for films, scatter files and stacks of layers.
     pub(super) fn behind(&mut self, finish: FinishId) -> FinishId {
         if let Some(behind) = self.behind.get(&finish) {
             return *behind;
@@ -116,7 +116,7 @@ impl<'a> Context<'a> {
         behind
     }
 
-    /// The finish behind one where the scene may give it; the back of a film or of a scatter file is its own.
+    /// The finish behind one where the scene may give it; the back of a film, a scatter file or a stack is its own.
     pub(super) fn declared_behind(
         &mut self,
         front: Option<FinishId>,
@@ -126,7 +126,8 @@ impl<'a> Context<'a> {
         let own = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
         if declared.is_some() && own.is_some() {
             let hint = "remove this: light from behind meets the other side of the same sheet";
-            let message = "a prism film or scatter file has no other finish behind it";
+            let message =
+                "a prism film, a scatter file or a stack of layers has no other finish behind it";
             return self.refuse(key, message, hint);
         }
         declared.or(own)
@@ -181,6 +182,7 @@ impl<'a> Context<'a> {
                 let [reflectance] = self.table(angles, [("reflectance", shares)], &key)?;
                 Some(Finish::Coated { reflectance })
             }
+            FinishSpec::Stack(spec) => self.stack(spec, &key.field("stack")),
             FinishSpec::PrismFilm(film) => Some(prism_film(film)),
             FinishSpec::ScatterFile(spec) => self.scatter_file(spec, &key.field("scatter_file")),
             FinishSpec::Mixture(parts) => self.mixture(parts, &key.field("mixture"), mixing),

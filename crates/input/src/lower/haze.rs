@@ -3,7 +3,7 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::finishes::{Least, SUM_TOLERANCE};
-use crate::lower::spectra::whole_nm;
+use crate::lower::laws::whole_nm;
 use crate::spec::finish::{AbgSpec, HarveySpec, HazeSheetSpec, HazeSidesSpec, TabulatedSpec};
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::{

@@ -6,6 +6,7 @@ use crate::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
 use indexmap::IndexMap;
 use lumiduct_base::math::Frame;
 use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, health};
+use lumiduct_core::optics::FinishModel;
 use lumiduct_core::scene::mesh::Mesh;
 use lumiduct_core::scene::{FinishId, SolidId};
 use lumiduct_files::mesh::{self, LengthUnit};
@@ -87,23 +88,28 @@ impl Context<'_> {
         }
     }
 
-    /// The declared finishes of the faces of a mesh, in their order.
+    /// The finishes outside and inside the faces of a mesh, in their order.
     pub(super) fn mesh_finishes(
         &mut self,
         name: &str,
         mesh: &TriangleMesh,
         declared: &IndexMap<&str, Option<FinishId>>,
         key: &Key,
-    ) -> Vec<Option<FinishId>> {
+    ) -> Vec<[Option<FinishId>; 2]> {
         let known: Vec<&str> = mesh.faces.iter().map(String::as_str).collect();
-        let mut finishes = vec![None; known.len()];
+        let mut finishes = vec![[None; 2]; known.len()];
         for (&face, &finish) in declared {
-            if finish.is_some_and(|finish| self.behind(finish) != finish) {
+            let has_grain =
+                |finish: FinishId| self.builder.scene().finishes[finish.index()].finish.has_grain();
+            if finish.is_some_and(has_grain) {
                 let message = "a prism film or scatter file cannot be put on a mesh: a mesh has no direction along the guide";
                 self.problems.error(&key.field(face), message).hint("use a sweep or a tube");
             }
             match known.iter().position(|name| *name == face) {
-                Some(index) => finishes[index] = finish,
+                Some(index) => {
+                    let outside = finish.map(|finish| self.behind(finish));
+                    finishes[index] = [outside, finish];
+                }
                 None => self.note_no_face(name, face, &known, key),
             }
         }
@@ -116,7 +122,7 @@ impl Context<'_> {
         name: &str,
         solid: SolidId,
         mesh: &TriangleMesh,
-        finishes: &[Option<FinishId>],
+        finishes: &[[Option<FinishId>; 2]],
         frame: &Frame,
     ) {
         let faces = self.builder.add_mesh(name, solid, Mesh::new(mesh, frame), finishes);

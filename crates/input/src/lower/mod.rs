@@ -6,6 +6,7 @@
 //! of other things are built after them.
 
 mod bodies;
+mod coatings;
 mod consistency;
 mod contacts;
 pub(crate) mod context;
@@ -15,6 +16,7 @@ mod emitters;
 mod finishes;
 mod flux;
 mod haze;
+mod laws;
 mod lenses;
 mod light_groups;
 mod luminaire_exports;
@@ -86,7 +88,7 @@ pub(crate) fn lower(
     context.lower_light_groups();
     context.lower_sensors();
     context.check_measures();
-    let Context { builder, faces, meshes, exports, problems, .. } = context;
+    let Context { builder, faces, meshes, exports, layer_tables, problems, .. } = context;
     plan::checks(&spec.check, problems);
     if scope == Scope::Keys || !problems.is_free_of_errors() {
         return None;
@@ -104,6 +106,7 @@ pub(crate) fn lower(
     luminaire_exports::note_distances(&scene, &exports, problems);
     spectra::note_tables(spec, places, &scene, problems);
     spectra::note_library(spec, &scene, problems);
+    coatings::note_layer_tables(&layer_tables, &scene, problems);
     let checks = spec.check.clone();
     problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes, exports })
 }

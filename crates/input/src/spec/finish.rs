@@ -1,5 +1,6 @@
 //! Finishes as a scene file states them.
 
+use crate::spec::coating::StackSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,11 @@ pub enum FinishSpec {
     /// A smooth interface with a coating, such as an antireflection coating: it reflects according to a table and
     /// refracts the rest; total internal reflection remains.
     Coated(CoatedSpec),
+    /// A smooth interface, or a sheet, with thin layers that interfere: antireflection coatings, dichroic filters and mirrors,
+    /// metal layers. Reflectance and transmittance follow from the layers, the media on both sides, the angle and the
+    /// wavelength; total internal reflection remains, and what absorbing layers keep is absorbed. Transmitted light is
+    /// refracted into the medium behind; between equal media it goes straight on.
+    Stack(StackSpec),
     /// A thin film, flat on one face, with prisms side by side on the other. It acts on light from both sides.
     PrismFilm(PrismFilmSpec),
     /// Scatter of a sheet from a file, as measured or as computed by another program. It acts on light from both sides.

@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub(crate) mod coating;
 pub(crate) mod daylight;
 pub(crate) mod finish;
 pub(crate) mod luminaire;

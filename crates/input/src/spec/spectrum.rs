@@ -62,7 +62,7 @@ pub enum IndexSpec {
     Law(IndexLawSpec),
 }
 
-/// A law of dispersion. A table with exactly one of these keys. The index must be from 1 to 4 at all visible wavelengths.
+/// A law of dispersion. A table with exactly one of these keys. The index of a medium must be from 1 to 4 at all visible wavelengths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum IndexLawSpec {

@@ -257,7 +257,7 @@ impl PrismFilm {
     }
 
     fn approach(&self, face: FilmFace, incidence: &Incidence) -> Approach {
-        let Incidence { dir, normal, index_from, index_to, grain } = *incidence;
+        let Incidence { dir, normal, index_from, index_to, grain, .. } = *incidence;
         let (into, flat, prisms) = match face {
             FilmFace::Flat => (-normal, index_from, index_to),
             FilmFace::Prisms => (normal, index_to, index_from),

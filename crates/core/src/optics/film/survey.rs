@@ -1,6 +1,6 @@
 //! Properties of a film over all directions, for its users.
 
-use crate::optics::{Incidence, PrismFilm};
+use crate::optics::{Incidence, PrismFilm, REFERENCE_WAVELENGTH};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -63,6 +63,7 @@ pub fn along_prisms(angle: f64, azimuth: f64, index: f64) -> Incidence {
         normal: DVec3::Z,
         index_from: index,
         index_to: index,
+        wavelength: REFERENCE_WAVELENGTH,
         grain: DVec3::Y,
     }
 }

@@ -22,6 +22,7 @@ mod open;
 mod prism_film;
 mod smooth;
 mod specular;
+mod stack;
 mod tabulated;
 #[cfg(test)]
 mod testing;
@@ -42,9 +43,10 @@ use crate::optics::finish::open::Open;
 use crate::optics::finish::prism_film::MetFilm;
 use crate::optics::finish::smooth::SmoothInterface;
 use crate::optics::finish::specular::Specular;
+use crate::optics::finish::stack::Stacked;
 use crate::optics::finish::tabulated::Tabulated;
 use crate::optics::{
-    AngleTable, FilmFace, Gaussian, Incidence, PrismFilm, Scattered, Shares, Side,
+    AngleTable, FilmFace, Gaussian, Incidence, LayerStack, PrismFilm, Scattered, Shares, Side,
 };
 use crate::rng::{Numbers, Sampler};
 use glam::DVec3;
@@ -107,6 +109,9 @@ pub enum Finish {
         /// Share that is mirrored.
         reflectance: AngleTable,
     },
+    /// An interface or a sheet with a stack of thin layers, in the order in which light meets them; light is refracted into
+    /// the medium behind.
+    Stack(Arc<LayerStack>),
     /// A rough interface or mirror of small facets.
     Microfacet(Microfacet),
     /// Haze about discrete directions.
@@ -174,6 +179,10 @@ macro_rules! ask {
                 let $finish = Coated { reflectance };
                 $answer
             }
+            Finish::Stack(stack) => {
+                let $finish = Stacked { stack };
+                $answer
+            }
             Finish::Microfacet($finish) => $answer,
             Finish::Haze($finish) => $answer,
             Finish::PrismFilm { film, face } => {
@@ -208,6 +217,9 @@ impl Finish {
         }
         if let Self::MeasuredSheet { sheet, met } = self {
             return Some(Self::MeasuredSheet { sheet: sheet.clone(), met: met.opposite() });
+        }
+        if let Self::Stack(stack) = self {
+            return stack.reversed().map(|stack| Self::Stack(Arc::new(stack)));
         }
         let Self::Mixture(parts) = self else { return None };
         let turned: Vec<_> = parts.iter().map(|(_, part)| part.from_behind()).collect();

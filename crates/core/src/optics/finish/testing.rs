@@ -2,13 +2,15 @@
 
 use crate::optics::{
     AngleTable, Faces, FacetKind, Finish, FinishModel, Gaussian, Haze, HazeBase, HazeLaw,
-    HazeSides, Incidence, Lobe, Microfacet, Side, scatter_at_faces,
+    HazeSides, Incidence, IndexLaw, LayerStack, Lobe, Microfacet, REFERENCE_WAVELENGTH, Side,
+    ThinLayer, scatter_at_faces,
 };
 use crate::rng::{Dimension, Sampler};
 use crate::tally::Tally;
 use glam::DVec3;
 use lumiduct_base::math::{circle, cosine_hemisphere};
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
 
 const INDICES: [[f64; 2]; 3] = [[1.0, 1.49], [1.49, 1.0], [1.3, 1.3]];
 
@@ -41,6 +43,23 @@ pub(crate) fn coated() -> Finish {
     Finish::Coated { reflectance: AngleTable::new(vec![[0.0, 0.01], [1.0, 0.1], [FRAC_PI_2, 1.0]]) }
 }
 
+fn stack(layers: [[f64; 3]; 2]) -> Finish {
+    let layer = |[index, extinction, thickness]: [f64; 3]| ThinLayer {
+        index: IndexLaw::Constant(index),
+        extinction: IndexLaw::Constant(extinction),
+        thickness,
+    };
+    Finish::Stack(Arc::new(LayerStack::new(layers.map(layer).to_vec(), None)))
+}
+
+pub(crate) fn clear_stack() -> Finish {
+    stack([[2.3, 0.0, 60.0], [1.46, 0.0, 120.0]])
+}
+
+pub(crate) fn absorbing_stack() -> Finish {
+    stack([[2.3, 0.0, 60.0], [0.96, 6.69, 8.0]])
+}
+
 pub(crate) fn facets(roughness: f64) -> Finish {
     Finish::Microfacet(Microfacet::new(roughness, FacetKind::Interface))
 }
@@ -67,7 +86,14 @@ pub(crate) fn mixture() -> Finish {
 /// Light that meets the face z = 0 from above at an angle, rad, between media of two indices.
 pub(crate) fn incidence(angle: f64, [index_from, index_to]: [f64; 2]) -> Incidence {
     let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
-    Incidence { dir, normal: DVec3::Z, index_from, index_to, grain: DVec3::Y }
+    Incidence {
+        dir,
+        normal: DVec3::Z,
+        index_from,
+        index_to,
+        wavelength: REFERENCE_WAVELENGTH,
+        grain: DVec3::Y,
+    }
 }
 
 /// Light by which finishes are compared: at angles with, near and without total reflection, and
@@ -157,13 +183,7 @@ fn gathered(faces: Faces<'_>, [above, below]: [f64; 2], side: Side) -> Vec<Tally
     for index in 0..PATHS {
         let mut sampler = Sampler::for_path(41, 0, index);
         let out = cosine(&mut sampler);
-        let incidence = Incidence {
-            dir: -out,
-            normal: DVec3::Z,
-            index_from: above,
-            index_to: below,
-            grain: DVec3::Y,
-        };
+        let incidence = Incidence { dir: -out, ..incidence(0.0, [above, below]) };
         let from = scatter_at_faces(faces, &incidence, &mut sampler).filter(|s| s.side == side);
         for (tally, [g, h]) in tallies.iter_mut().zip(PAIRS) {
             let field = from.map_or(0.0, |from| from.factor * WINDOWS[h](from.dir));
@@ -183,7 +203,7 @@ fn shone(finish: &Finish, [above, below]: [f64; 2], side: Side) -> Vec<Tally> {
     for index in 0..PATHS {
         let mut sampler = Sampler::for_path(43, 0, index);
         let from = cosine(&mut sampler) * DVec3::new(1.0, 1.0, normal.z);
-        let incidence = Incidence { dir: -from, normal, index_from, index_to, grain: DVec3::Y };
+        let incidence = Incidence { dir: -from, normal, ..incidence(0.0, [index_from, index_to]) };
         let out = finish.scatter(&incidence, &mut sampler).filter(|out| out.side == side);
         for (tally, [g, h]) in tallies.iter_mut().zip(PAIRS) {
             let leaving = out.map_or(0.0, |out| out.factor * WINDOWS[g](out.dir));
@@ -358,6 +378,7 @@ pub(crate) fn assert_reciprocal(finish: &Finish, indices: [f64; 2]) {
                 normal: DVec3::Z * up,
                 index_from: index_out,
                 index_to: other,
+                wavelength: REFERENCE_WAVELENGTH,
                 grain: DVec3::ZERO,
             };
             let one = finish.evaluate(&there, out) / (index_out * index_out);

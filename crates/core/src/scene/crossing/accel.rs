@@ -128,7 +128,7 @@ mod tests {
             face_of: vec![0; 4],
             faces: vec!["all".into()],
         };
-        builder.add_mesh("tetrahedron", solid, Mesh::new(&mesh, &Frame::WORLD), &[None]);
+        builder.add_mesh("tetrahedron", solid, Mesh::new(&mesh, &Frame::WORLD), &[[None; 2]]);
         let scene = builder.build();
         let ray = Ray::new(DVec3::new(0.2, 0.3, -1.0), DVec3::Z);
         let entry = scene.find_next(&ray, &StartSurfaces::default(), &Inside::default()).unwrap();

@@ -185,7 +185,7 @@ impl PassedRecords {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Faces;
+    use crate::optics::{Faces, REFERENCE_WAVELENGTH};
     use crate::transport::walk::scatter::MetInterface;
     use std::f64::consts::PI;
 
@@ -195,8 +195,14 @@ mod tests {
 
     /// A face as light from glass along `dir` meets it, with air behind.
     fn met_from_glass(finish: &'static Finish, dir: DVec3) -> MetInterface<'static> {
-        let incidence =
-            Incidence { dir, normal: DVec3::Z, index_from: 1.5, index_to: 1.0, grain: DVec3::ZERO };
+        let incidence = Incidence {
+            dir,
+            normal: DVec3::Z,
+            index_from: 1.5,
+            index_to: 1.0,
+            wavelength: REFERENCE_WAVELENGTH,
+            grain: DVec3::ZERO,
+        };
         MetInterface {
             faces: Faces { own: finish, behind: finish },
             incidence,
@@ -208,9 +214,10 @@ mod tests {
     /// The same face as it is met from air.
     fn met_from_air(finish: &'static Finish, dir: DVec3) -> MetInterface<'static> {
         let glass = met_from_glass(finish, dir);
-        let Incidence { index_from, index_to, grain, .. } = glass.incidence;
+        let Incidence { index_from, index_to, .. } = glass.incidence;
         let (index_from, index_to) = (index_to, index_from);
-        let incidence = Incidence { dir, normal: DVec3::NEG_Z, index_from, index_to, grain };
+        let incidence =
+            Incidence { dir, normal: DVec3::NEG_Z, index_from, index_to, ..glass.incidence };
         MetInterface { incidence, facet: DVec3::NEG_Z, shading: DVec3::NEG_Z, ..glass }
     }
 

@@ -283,6 +283,7 @@ fn arriving((scene, has_grain): (&Scene, bool), key: &PhotonKey, photon: &Passin
                 },
                 index_from: index(from),
                 index_to: index(to),
+                wavelength,
                 grain: match scene.surface(prim) {
                     Surface::Patch(patch) if has_grain => patch.along(point),
                     Surface::Patch(_) | Surface::Triangle(..) => DVec3::ZERO,

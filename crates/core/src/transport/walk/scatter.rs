@@ -23,14 +23,16 @@ pub(super) fn scatter_photon(
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     let toward = interface.acting.toward;
-    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    let wavelength = path.wavelength;
+    let index = |medium: MediumId| scene.media[medium.index()].index(wavelength);
     let (index_from, index_to) = (index(interface.from), index(interface.to));
     let finish = finish_of(scene, interface.finish);
     match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, point);
             let grain = grain(finish, patch, point);
-            finish.scatter(&Incidence { dir, normal, index_from, index_to, grain }, sampler)
+            let incidence = Incidence { dir, normal, index_from, index_to, wavelength, grain };
+            finish.scatter(&incidence, sampler)
         }
         Surface::Triangle(body, triangle) => {
             let facing = |outward: DVec3| match toward {
@@ -42,10 +44,9 @@ pub(super) fn scatter_photon(
             // An interpolated normal may face away from grazing light; then the facet's normal is
             // used.
             let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
-            let out = finish.scatter(
-                &Incidence { dir, normal, index_from, index_to, grain: DVec3::ZERO },
-                sampler,
-            )?;
+            let grain = DVec3::ZERO;
+            let incidence = Incidence { dir, normal, index_from, index_to, wavelength, grain };
+            let out = finish.scatter(&incidence, sampler)?;
             Some(kept_on_its_side(out, facet))
         }
     }
@@ -117,6 +118,7 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
             normal: acting_normal(vertex.dir, shading, facet),
             index_from: index(interface.from),
             index_to: index(interface.to),
+            wavelength: path.wavelength,
             grain,
         },
         facet,
@@ -144,14 +146,14 @@ pub fn scatter_gather_path(
 impl<'s> MetInterface<'s> {
     /// The finish that acts on light of this unit direction, from whichever side, and its incidence.
     pub(crate) fn acting_on(&self, dir: DVec3) -> (&'s Finish, Incidence) {
-        let Incidence { index_from, index_to, grain, .. } = self.incidence;
+        let Incidence { index_from, index_to, .. } = self.incidence;
         if dir.dot(self.facet) < 0.0 {
             let normal = acting_normal(dir, self.shading, self.facet);
             return (self.faces.own, Incidence { dir, normal, ..self.incidence });
         }
         let normal = acting_normal(dir, -self.shading, -self.facet);
         let (index_from, index_to) = (index_to, index_from);
-        (self.faces.behind, Incidence { dir, normal, index_from, index_to, grain })
+        (self.faces.behind, Incidence { dir, normal, index_from, index_to, ..self.incidence })
     }
 
     /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and

@@ -41,6 +41,58 @@ fn a_lamp_before_a_dichroic_rod() {
     all_agree("dichroic rod", &coloured_rod(&lamp).replace("[finishes.mirror]", &filter));
 }
 
+/// What stands behind a rod and around it sends each wavelength on in its own proportion, in each of the three ways.
+#[test]
+fn a_lamp_before_coloured_sheets() {
+    let lamp = format!(
+        "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\n{COLD}\nat = {{ position_mm = [0, 0, -1] }}"
+    );
+    let warm = "{ by_nm = [[420, 0.1], [500, 0.3], [600, 0.8]] }";
+    let blue = "{ by_nm = [[430, 0.5], [520, 0.2], [600, 0.0]] }";
+    for scatter in [
+        format!("specular = {{ reflectance = {warm} }}"),
+        format!("lambertian = {{ reflectance = {warm}, transmittance = {blue} }}"),
+        format!("gaussian = {{ sigma_deg = 20, reflectance = {blue}, transmittance = 0.3 }}"),
+    ] {
+        let text = coloured_rod(&lamp).replace("specular = { reflectance = 0.9 }", &scatter);
+        let sheet = "[sheets.front.disk]\nradius_mm = 6\nfinish = \"mirror\"\nat = { position_mm = [0, 0, 13] }\n[sensors]";
+        all_agree(&scatter, &text.replace("[sensors]", sheet));
+    }
+}
+
+/// Of a line as much is reflected and transmitted as the tables say at its wavelength.
+#[test]
+fn lines_meet_the_shares_of_their_wavelengths() {
+    let beam = |nm: f64| {
+        format!(
+            "[sources.line_{nm}.disk]\nradius_mm = 1\nflux_lm = 1\nemission = \"collimated\"\nspectrum = {{ line_nm = {nm} }}\n"
+        )
+    };
+    let text = [450.0, 600.0].map(beam).concat()
+        + r#"
+[finishes.filter.specular]
+reflectance = { by_nm = [[400, 0.8], [500, 0.4], [700, 0.0]] }
+transmittance = { by_nm = [[400, 0.1], [700, 0.7]] }
+[sheets.filter.disk]
+radius_mm = 3
+finish = "filter"
+at = { position_mm = [0, 0, 2] }
+[sensors]
+beyond = { plane = { disk = { radius_mm = 3 } }, at = { position_mm = [0, 0, 4], axis = [0, 0, -1] } }
+before = { plane = { disk = { radius_mm = 3 } }, at = { position_mm = [0, 0, -1], axis = [0, 0, 1] } }
+"#;
+    let found = measures(&text, Way::Forward);
+    for (nm, reflected, transmitted) in [(450, 0.6, 0.2), (600, 0.2, 0.5)] {
+        for (sensor, expected) in [("before", reflected), ("beyond", transmitted)] {
+            let own = &found.values[&format!("{sensor}.efficiency.from.line_{nm}")];
+            // A line is 0.01 nm wide.
+            let error = 4.0 * own.std_error + 1e-4;
+            let off = (own.value - expected).abs();
+            assert!(off < error && error < 0.02, "{sensor} {nm}: {own:?}, {expected}");
+        }
+    }
+}
+
 /// A film in air transmits 1/(1 + F sin²(2π n d/λ)) of a normal beam, F = ((n² - 1)/(2n))² (Born & Wolf, 7th ed., 7.6.1).
 #[test]
 fn lines_pass_a_film_by_their_wavelengths() {

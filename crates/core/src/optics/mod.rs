@@ -28,6 +28,7 @@ pub use coating::{LayerStack, ThinLayer};
 pub use dispersion::{AbsorptionLaw, IndexLaw, REFERENCE_WAVELENGTH};
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use finish::Finish;
+pub use finish::coloured::{Coloured, PlainScatter, SpectralShare};
 pub use finish::faces::Faces;
 pub(crate) use finish::faces::scatter_at_faces;
 pub use finish::haze::{Haze, HazeBase, HazeSides, integrated_scatter};

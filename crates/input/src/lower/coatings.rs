@@ -1,18 +1,16 @@
 //! Stacks of thin layers, and what can be wrong with their materials.
 
 use crate::keys::Key;
-use crate::lower::context::{Context, LayerTable};
+use crate::lower::context::{Context, FinishTable};
 use crate::lower::laws::{index_table, whole_nm};
-use crate::lower::spectra::{BEYOND, is_spectral, lit_spectra};
-use crate::problems::Problems;
+use crate::lower::spectra::is_spectral;
 use crate::spec::coating::{
     ExtinctionSpec, ExtinctionTableSpec, LayerIndexSpec, LayerSpec, StackSpec,
 };
 use crate::spec::spectrum::IndexSpec;
-use lumiduct_base::number::{format_percent, format_value};
+use lumiduct_base::number::format_value;
 use lumiduct_core::colour::SpectralTable;
 use lumiduct_core::optics::{Finish, IndexLaw, LayerStack, REFERENCE_WAVELENGTH, ThinLayer};
-use lumiduct_core::scene::Scene;
 use lumiduct_files::spectral::SpectralColumn;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -70,7 +68,7 @@ impl Context<'_> {
         let (index, extinction) = (index?, extinction?);
         for (law, key) in [(&index, &index_key), (&extinction, &extinction_key)] {
             if let Some(range) = index_table(law).map(SpectralTable::range) {
-                self.layer_tables.push(LayerTable { key: key.clone(), range, wavelength });
+                self.finish_tables.push(FinishTable { key: key.clone(), range, wavelength });
             }
         }
         let mut places: Vec<f64> = whole_nm().chain(wavelength).collect();
@@ -101,30 +99,5 @@ impl Context<'_> {
             return self.refuse(&key, message, "expected 0 to 20: layers do not amplify light");
         }
         Some(IndexLaw::Table(self.spectral_table(rows, &key)?))
-    }
-}
-
-/// Notes layers whose tables end within the light that meets them.
-pub(super) fn note_layer_tables(tables: &[LayerTable], scene: &Scene, problems: &mut Problems) {
-    for LayerTable { key, range: [first, last], wavelength } in tables {
-        let range = format!("{} to {} nm", format_value(*first), format_value(*last));
-        if let Some(nm) = wavelength {
-            if !(*first..=*last).contains(nm) {
-                let message = format!("{range} does not include {} nm", format_value(*nm));
-                problems
-                    .error(key, message)
-                    .hint("the stack acts at this wavelength; tables are in nm");
-            }
-            continue;
-        }
-        let shares = lit_spectra(scene).map(|spectrum| spectrum.share([*first, *last]));
-        let least = shares.fold(1.0, f64::min);
-        if least < 1.0 - BEYOND {
-            let message = format!(
-                "{} of the light of a source is outside of {range}; there the value at the end applies",
-                format_percent(1.0 - least)
-            );
-            problems.warning(key, message);
-        }
     }
 }

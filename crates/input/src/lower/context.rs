@@ -25,12 +25,12 @@ pub(crate) enum Scope {
     Scene,
 }
 
-/// Where a layer has values by wavelength, nm.
+/// Where a finish has values by wavelength, nm.
 #[derive(Debug)]
-pub(super) struct LayerTable {
+pub(super) struct FinishTable {
     pub(super) key: Key,
     pub(super) range: [f64; 2],
-    /// The wavelength at which its stack acts on all light, nm; `None` for that of each path.
+    /// The wavelength at which it acts on all light, nm; `None` for that of each path.
     pub(super) wavelength: Option<f64>,
 }
 
@@ -48,8 +48,8 @@ pub(super) struct Context<'a> {
     pub(super) named_finishes: IndexMap<String, Option<Finish>>,
     /// The back of finishes, as far as it was requested.
     pub(super) behind: IndexMap<FinishId, FinishId>,
-    /// Tables by wavelength of the layers of finishes.
-    pub(super) layer_tables: Vec<LayerTable>,
+    /// Tables by wavelength of finishes.
+    pub(super) finish_tables: Vec<FinishTable>,
     /// Faces by dotted name; a name such as `duct.wall` may refer to several.
     pub(super) faces: IndexMap<String, Vec<FaceId>>,
     /// The spectrum of the source that is lowered.
@@ -79,7 +79,7 @@ impl<'a> Context<'a> {
             finishes: IndexMap::new(),
             named_finishes: IndexMap::new(),
             behind: IndexMap::new(),
-            layer_tables: Vec::new(),
+            finish_tables: Vec::new(),
             faces: IndexMap::new(),
             spectrum: None,
             members: Vec::new(),

@@ -8,9 +8,10 @@ use crate::spec::finish::{
     FinishRef, FinishSpec, GaussianSpec, GgxSpec, GrainSpec, MixturePartSpec, PrismFilmSpec,
     PrismSideSpec,
 };
+use crate::spec::spectrum::ShareSpec;
 use indexmap::{IndexMap, IndexSet};
 use lumiduct_core::optics::{
-    FacetKind, FilmFace, FilmMake, Finish, Gaussian, Grain, Microfacet, PrismFilm,
+    FacetKind, FilmFace, FilmMake, Finish, Gaussian, Grain, Microfacet, PlainScatter, PrismFilm,
 };
 use lumiduct_core::scene::FinishId;
 
@@ -158,18 +159,15 @@ impl<'a> Context<'a> {
         match spec {
             FinishSpec::Smooth(_) => Some(Finish::Smooth),
             FinishSpec::Specular(s) => {
-                let (reflectance, transmittance) = (s.reflectance, s.transmittance);
-                self.check_sum(&key.field("specular"), [reflectance, transmittance], Least::Zero)?;
-                Some(Finish::Specular { reflectance, transmittance })
+                let (key, shares) = (key.field("specular"), [&s.reflectance, &s.transmittance]);
+                self.with_shares(PlainScatter::Specular, shares, Least::Zero, &key)
             }
             FinishSpec::Metal(metal) => Some(Finish::Metal { n: metal.n, k: metal.k }),
             FinishSpec::Absorber(_) => Some(Finish::Absorber),
             FinishSpec::Open(_) => Some(Finish::Open),
             FinishSpec::Lambertian(s) => {
-                let (reflectance, transmittance) = (s.reflectance, s.transmittance);
-                let key = key.field("lambertian");
-                self.check_sum(&key, [reflectance, transmittance], Least::AboveZero)?;
-                Some(Finish::Lambertian { reflectance, transmittance })
+                let (key, shares) = (key.field("lambertian"), [&s.reflectance, &s.transmittance]);
+                self.with_shares(PlainScatter::Lambertian, shares, Least::AboveZero, &key)
             }
             FinishSpec::Gaussian(spec) => self.gaussian(spec, &key.field("gaussian")),
             FinishSpec::Ggx(spec) => self.ggx(spec, &key.field("ggx")),
@@ -214,13 +212,13 @@ impl<'a> Context<'a> {
 
     fn gaussian(&mut self, spec: &GaussianSpec, key: &Key) -> Option<Finish> {
         let lobe = Gaussian::new(spec.sigma_deg.to_radians());
-        if let (None, None) = (spec.reflectance, spec.transmittance) {
+        if let (None, None) = (&spec.reflectance, &spec.transmittance) {
             return Some(Finish::GaussianDielectric { lobe });
         }
-        let reflectance = spec.reflectance.unwrap_or(0.0);
-        let transmittance = spec.transmittance.unwrap_or(0.0);
-        self.check_sum(key, [reflectance, transmittance], Least::AboveZero)?;
-        Some(Finish::GaussianSheet { lobe, reflectance, transmittance })
+        let none = ShareSpec::default();
+        let shares =
+            [&spec.reflectance, &spec.transmittance].map(|own| own.as_ref().unwrap_or(&none));
+        self.with_shares(PlainScatter::Gaussian(lobe), shares, Least::AboveZero, key)
     }
 
     fn ggx(&mut self, spec: &GgxSpec, key: &Key) -> Option<Finish> {

@@ -32,6 +32,7 @@ mod reliefs;
 mod scatter;
 mod sensor_keys;
 mod sensors;
+mod shares;
 mod sheets;
 mod slips;
 mod solids;
@@ -88,7 +89,7 @@ pub(crate) fn lower(
     context.lower_light_groups();
     context.lower_sensors();
     context.check_measures();
-    let Context { builder, faces, meshes, exports, layer_tables, problems, .. } = context;
+    let Context { builder, faces, meshes, exports, finish_tables, problems, .. } = context;
     plan::checks(&spec.check, problems);
     if scope == Scope::Keys || !problems.is_free_of_errors() {
         return None;
@@ -106,7 +107,7 @@ pub(crate) fn lower(
     luminaire_exports::note_distances(&scene, &exports, problems);
     spectra::note_tables(spec, places, &scene, problems);
     spectra::note_library(spec, &scene, problems);
-    coatings::note_layer_tables(&layer_tables, &scene, problems);
+    spectra::note_finish_tables(&finish_tables, &scene, problems);
     let checks = spec.check.clone();
     problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes, exports })
 }

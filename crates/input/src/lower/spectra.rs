@@ -1,8 +1,8 @@
-//! Spectra of sources, and what of them is outside of the tables of media.
+//! Spectra of sources, and what of them is outside of the tables of media and finishes.
 
 use crate::keys::{Key, Places};
 use crate::library;
-use crate::lower::context::Context;
+use crate::lower::context::{Context, FinishTable};
 use crate::lower::laws::index_table;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
@@ -18,7 +18,7 @@ use lumiduct_files::spectral::SpectralColumn;
 use std::sync::Arc;
 
 /// Share of light beyond a table that is worth a remark, 1.
-pub(super) const BEYOND: f64 = 1e-3;
+const BEYOND: f64 = 1e-3;
 
 /// Whether any source has a spectrum.
 pub(super) fn is_spectral(spec: &SceneSpec) -> bool {
@@ -178,9 +178,34 @@ pub(super) fn note_tables(
 }
 
 /// The spectra of the sources that shine.
-pub(super) fn lit_spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
+fn lit_spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
     let lit = scene.sources.iter().filter(|source| source.is_lit());
     lit.filter_map(|source| Some(source.spectrum.as_ref()?.spectrum()))
+}
+
+/// Notes finishes whose tables end within the light that meets them.
+pub(super) fn note_finish_tables(tables: &[FinishTable], scene: &Scene, problems: &mut Problems) {
+    for FinishTable { key, range: [first, last], wavelength } in tables {
+        let range = format!("{} to {} nm", format_value(*first), format_value(*last));
+        if let Some(nm) = wavelength {
+            if !(*first..=*last).contains(nm) {
+                let message = format!("{range} does not include {} nm", format_value(*nm));
+                problems
+                    .error(key, message)
+                    .hint("the finish acts at this wavelength; tables are in nm");
+            }
+            continue;
+        }
+        let shares = lit_spectra(scene).map(|spectrum| spectrum.share([*first, *last]));
+        let least = shares.fold(1.0, f64::min);
+        if least < 1.0 - BEYOND {
+            let message = format!(
+                "{} of the light of a source is outside of {range}; there the value at the end applies",
+                format_percent(1.0 - least)
+            );
+            problems.warning(key, message);
+        }
+    }
 }
 
 /// Notes light outside of the wavelengths for which media of the library were measured.

@@ -1,6 +1,7 @@
 //! Finishes as a scene file states them.
 
 use crate::spec::coating::StackSpec;
+use crate::spec::spectrum::ShareSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,7 @@ pub enum FinishSpec {
     /// treated as unpolarised at every interface. If polarisation were kept, 0.7 % more would pass the two polished ends
     /// of a rod, and 3.6 % more a plate of index 1.49 at 75 deg.
     Smooth(EmptySpec),
-    /// A mirror with a constant reflectance, or a window with a constant transmittance. The rest is absorbed.
+    /// A mirror with the same reflectance at every angle, or a window with the same transmittance. The rest is absorbed.
     Specular(SpecularSpec),
     /// A smooth metal by its complex refractive index.
     Metal(MetalSpec),
@@ -59,16 +60,14 @@ pub enum FinishSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct EmptySpec {}
 
-/// A mirror with a constant reflectance.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A mirror with a reflectance that does not depend on the angle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpecularSpec {
     /// Share of the flux that is mirrored, at every angle.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub reflectance: f64,
-    /// Share of the flux that goes straight on, at every angle. At most 1 together with the reflectance.
+    pub reflectance: ShareSpec,
+    /// Share of the flux that goes straight on, at every angle. At every wavelength at most 1 together with the reflectance.
     #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub transmittance: f64,
+    pub transmittance: ShareSpec,
 }
 
 /// A metal by its complex refractive index n + i k.
@@ -83,30 +82,26 @@ pub struct MetalSpec {
 }
 
 /// Perfectly diffuse reflection and transmission.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LambertianSpec {
     /// Share of the flux that is reflected diffusely.
     #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub reflectance: f64,
+    pub reflectance: ShareSpec,
     /// Share of the flux that is transmitted diffusely.
     #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub transmittance: f64,
+    pub transmittance: ShareSpec,
 }
 
 /// Scatter about the mirrored direction and the direction straight through.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GaussianSpec {
     /// Standard deviation of the scatter.
     #[schemars(range(min = 0.01, max = 60.0))]
     pub sigma_deg: f64,
     /// Share of the flux that is reflected. Together with the transmittance above 0 and at most 1.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub reflectance: Option<f64>,
+    pub reflectance: Option<ShareSpec>,
     /// Share of the flux that is transmitted.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub transmittance: Option<f64>,
+    pub transmittance: Option<ShareSpec>,
 }
 
 /// Small facets with GGX slopes.

@@ -80,6 +80,32 @@ pub enum IndexLawSpec {
     Csv(String),
 }
 
+/// Share of light: a number, or a table by wavelength.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ShareSpec {
+    /// The same at every wavelength, from 0 to 1.
+    Constant(#[schemars(range(min = 0.0, max = 1.0))] f64),
+    /// By wavelength.
+    Table(ShareTableSpec),
+}
+
+impl Default for ShareSpec {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+/// Share of light by wavelength. A table with exactly one of these keys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ShareTableSpec {
+    /// Pairs of wavelength and share, from 0 to 1, linear in between and constant beyond: `[[400, 0.1], [700, 0.8]]`.
+    ByNm(#[schemars(length(min = 2))] Vec<[f64; 2]>),
+    /// A CSV file with the same in its first two columns, the first named `nm` or `um`. A relative path is relative to the scene file.
+    Csv(String),
+}
+
 /// Absorption coefficient: a number, or a table by wavelength.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]

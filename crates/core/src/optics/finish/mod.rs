@@ -8,6 +8,7 @@
 
 mod absorber;
 mod coated;
+pub(crate) mod coloured;
 pub(crate) mod faces;
 mod gaussian_dielectric;
 mod gaussian_sheet;
@@ -30,6 +31,7 @@ mod testing;
 use crate::optics::bsdf::sheet::{MeasuredSheet, SheetSide};
 use crate::optics::finish::absorber::Absorber;
 use crate::optics::finish::coated::Coated;
+use crate::optics::finish::coloured::{Coloured, PlainScatter};
 use crate::optics::finish::gaussian_dielectric::GaussianDielectric;
 use crate::optics::finish::gaussian_sheet::GaussianSheet;
 use crate::optics::finish::haze::Haze;
@@ -112,6 +114,8 @@ pub enum Finish {
     /// An interface or a sheet with a stack of thin layers, in the order in which light meets them; light is refracted into
     /// the medium behind.
     Stack(Arc<LayerStack>),
+    /// A mirror, a diffuser or a Gaussian sheet with shares by wavelength.
+    Coloured(Box<Coloured>),
     /// A rough interface or mirror of small facets.
     Microfacet(Microfacet),
     /// Haze about discrete directions.
@@ -183,6 +187,7 @@ macro_rules! ask {
                 let $finish = Stacked { stack };
                 $answer
             }
+            Finish::Coloured($finish) => $answer,
             Finish::Microfacet($finish) => $answer,
             Finish::Haze($finish) => $answer,
             Finish::PrismFilm { film, face } => {
@@ -202,6 +207,17 @@ macro_rules! ask {
 }
 
 impl Finish {
+    /// A finish with constant shares, 0..=1 together.
+    pub fn with_shares(scatter: PlainScatter, [reflectance, transmittance]: [f64; 2]) -> Self {
+        match scatter {
+            PlainScatter::Specular => Self::Specular { reflectance, transmittance },
+            PlainScatter::Lambertian => Self::Lambertian { reflectance, transmittance },
+            PlainScatter::Gaussian(lobe) => {
+                Self::GaussianSheet { lobe, reflectance, transmittance }
+            }
+        }
+    }
+
     /// The sheets with measured scatter among it and its parts.
     pub fn measured_sheets(&self) -> Vec<&MeasuredSheet> {
         if let Self::Mixture(parts) = self {

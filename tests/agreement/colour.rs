@@ -38,10 +38,13 @@ fn a_lamp_before_a_dichroic_rod() {
     let filter = format!(
         "faces = {{ entry = \"filter\", exit = \"filter\" }}\n[finishes.filter.stack]\nlayers = [{pair}, {pair}, {pair}]\n[finishes.mirror]"
     );
-    all_agree("dichroic rod", &coloured_rod(&lamp).replace("[finishes.mirror]", &filter));
+    let bare = coloured_rod(&lamp);
+    let text = bare.replace("[finishes.mirror]", &filter);
+    assert_ne!(text, bare);
+    all_agree("dichroic rod", &text);
 }
 
-/// What stands behind a rod and around it sends each wavelength on in its own proportion, in each of the three ways.
+/// The sheets behind and before a rod reflect and transmit by wavelength.
 #[test]
 fn a_lamp_before_coloured_sheets() {
     let lamp = format!(
@@ -54,7 +57,9 @@ fn a_lamp_before_coloured_sheets() {
         format!("lambertian = {{ reflectance = {warm}, transmittance = {blue} }}"),
         format!("gaussian = {{ sigma_deg = 20, reflectance = {blue}, transmittance = 0.3 }}"),
     ] {
-        let text = coloured_rod(&lamp).replace("specular = { reflectance = 0.9 }", &scatter);
+        let grey = coloured_rod(&lamp);
+        let text = grey.replace("specular = { reflectance = 0.9 }", &scatter);
+        assert_ne!(text, grey);
         let sheet = "[sheets.front.disk]\nradius_mm = 6\nfinish = \"mirror\"\nat = { position_mm = [0, 0, 13] }\n[sensors]";
         all_agree(&scatter, &text.replace("[sensors]", sheet));
     }

@@ -73,6 +73,9 @@ impl Outline {
     }
 }
 
+/// The key of tables by wavelength.
+const BY_WAVELENGTH: &str = "by_nm";
+
 /// A key without its unit, in words, and the unit.
 fn label(key: &str) -> (String, &'static str) {
     let ending = UNITS.iter().find(|(ending, _)| key.ends_with(ending) && key.len() > ending.len());
@@ -84,6 +87,9 @@ fn label(key: &str) -> (String, &'static str) {
 fn words(key: &str, value: Option<&Value>) -> String {
     let (label, _) = label(key);
     let Some(value) = value else { return label };
+    if let (BY_WAVELENGTH, Some(rows)) = (key, value.as_array()) {
+        return format!("by wavelength in {} rows", rows.len());
+    }
     match value {
         Value::Bool(true) => label,
         Value::Bool(false) => format!("no {label}"),
@@ -176,6 +182,8 @@ mod tests {
         let many: Vec<f64> = (0..50).map(f64::from).collect();
         let steps: Vec<Value> = many.iter().map(|x| serde_json::json!({"bend_deg": x})).collect();
         assert_eq!(value_words("positions_mm", &many.into()), "of 50 values in mm");
+        let table = serde_json::json!({"by_nm": [[400, 0.1], [700, 0.8]]});
+        assert_eq!(words("reflectance", Some(&table)), "reflectance by wavelength in 2 rows");
         assert!(value_words("path", &steps.into()).ends_with("bend 7 deg; and 42 more"));
     }
 }

@@ -7,7 +7,6 @@ use crate::lower::spectra::is_spectral;
 use crate::spec::coating::{
     ExtinctionSpec, ExtinctionTableSpec, LayerIndexSpec, LayerSpec, StackSpec,
 };
-use crate::spec::spectrum::IndexSpec;
 use lumiduct_base::number::format_value;
 use lumiduct_core::colour::SpectralTable;
 use lumiduct_core::optics::{Finish, IndexLaw, LayerStack, REFERENCE_WAVELENGTH, ThinLayer};
@@ -60,9 +59,7 @@ impl Context<'_> {
         let [index_key, extinction_key] = ["index", "extinction"].map(|name| key.field(name));
         let index = match &spec.index {
             LayerIndexSpec::Constant(index) => Some(IndexLaw::Constant(*index)),
-            LayerIndexSpec::Law(law) => {
-                self.index_law_within(INDICES, &IndexSpec::Law(law.clone()), &index_key)
-            }
+            LayerIndexSpec::Law(law) => self.index_law_within(INDICES, law, &index_key),
         };
         let extinction = self.extinction(&spec.extinction, &extinction_key);
         let (index, extinction) = (index?, extinction?);
@@ -70,6 +67,15 @@ impl Context<'_> {
             if let Some(range) = index_table(law).map(SpectralTable::range) {
                 self.finish_tables.push(FinishTable { key: key.clone(), range, wavelength });
             }
+        }
+        let at_stack = wavelength.map(|nm| (nm, index.at(nm)));
+        // Not a number beyond a pole of the law.
+        if let Some((nm, value)) = at_stack.filter(|(_, value)| !INDICES.contains(value)) {
+            let message =
+                format!("makes the index {} at {} nm", format_value(value), format_value(nm));
+            let (least, most) = (INDICES.start(), INDICES.end());
+            let hint = format!("expected {least} to {most} at the wavelength of the stack");
+            return self.refuse(&index_key, message, hint);
         }
         let mut places: Vec<f64> = whole_nm().chain(wavelength).collect();
         places.retain(|nm| index.at(*nm) < 1.0 && extinction.at(*nm) == 0.0);

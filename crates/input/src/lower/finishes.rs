@@ -11,7 +11,7 @@ use crate::spec::finish::{
 use crate::spec::spectrum::ShareSpec;
 use indexmap::{IndexMap, IndexSet};
 use lumiduct_core::optics::{
-    FacetKind, FilmFace, FilmMake, Finish, Gaussian, Grain, Microfacet, PlainScatter, PrismFilm,
+    FacetKind, FilmFace, FilmMake, Finish, Gaussian, Grain, Microfacet, PrismFilm, ScatterLaw,
 };
 use lumiduct_core::scene::FinishId;
 
@@ -125,7 +125,10 @@ impl<'a> Context<'a> {
         key: &Key,
     ) -> Option<FinishId> {
         let own = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
-        if declared.is_some() && own.is_some() {
+        let is_whole = |front: FinishId| {
+            self.builder.scene().finishes[front.index()].finish.is_of_both_sides()
+        };
+        if declared.is_some() && front.is_some_and(is_whole) {
             let hint = "remove this: light from behind meets the other side of the same sheet";
             let message =
                 "a prism film, a scatter file or a stack of layers has no other finish behind it";
@@ -160,14 +163,14 @@ impl<'a> Context<'a> {
             FinishSpec::Smooth(_) => Some(Finish::Smooth),
             FinishSpec::Specular(s) => {
                 let (key, shares) = (key.field("specular"), [&s.reflectance, &s.transmittance]);
-                self.with_shares(PlainScatter::Specular, shares, Least::Zero, &key)
+                self.with_shares(ScatterLaw::Specular, shares, Least::Zero, &key)
             }
             FinishSpec::Metal(metal) => Some(Finish::Metal { n: metal.n, k: metal.k }),
             FinishSpec::Absorber(_) => Some(Finish::Absorber),
             FinishSpec::Open(_) => Some(Finish::Open),
             FinishSpec::Lambertian(s) => {
                 let (key, shares) = (key.field("lambertian"), [&s.reflectance, &s.transmittance]);
-                self.with_shares(PlainScatter::Lambertian, shares, Least::AboveZero, &key)
+                self.with_shares(ScatterLaw::Lambertian, shares, Least::AboveZero, &key)
             }
             FinishSpec::Gaussian(spec) => self.gaussian(spec, &key.field("gaussian")),
             FinishSpec::Ggx(spec) => self.ggx(spec, &key.field("ggx")),
@@ -218,7 +221,7 @@ impl<'a> Context<'a> {
         let none = ShareSpec::default();
         let shares =
             [&spec.reflectance, &spec.transmittance].map(|own| own.as_ref().unwrap_or(&none));
-        self.with_shares(PlainScatter::Gaussian(lobe), shares, Least::AboveZero, key)
+        self.with_shares(ScatterLaw::Gaussian(lobe), shares, Least::AboveZero, key)
     }
 
     fn ggx(&mut self, spec: &GgxSpec, key: &Key) -> Option<Finish> {

@@ -44,25 +44,25 @@ impl Context<'_> {
 
     /// The index of a medium by wavelength.
     pub(super) fn index_law(&mut self, spec: &IndexSpec, key: &Key) -> Option<IndexLaw> {
-        self.index_law_within(INDICES, spec, key)
+        match spec {
+            IndexSpec::Constant(index) => Some(IndexLaw::Constant(*index)),
+            IndexSpec::Law(law) => self.index_law_within(INDICES, law, key),
+        }
     }
 
     /// An index by wavelength, of a material whose indices are within these limits.
     pub(super) fn index_law_within(
         &mut self,
         limits: RangeInclusive<f64>,
-        spec: &IndexSpec,
+        spec: &IndexLawSpec,
         key: &Key,
     ) -> Option<IndexLaw> {
         let (law, key) = match spec {
-            IndexSpec::Constant(index) => return Some(IndexLaw::Constant(*index)),
-            IndexSpec::Law(IndexLawSpec::Cauchy(numbers)) => {
-                (IndexLaw::Cauchy(*numbers), key.field("cauchy"))
-            }
-            IndexSpec::Law(IndexLawSpec::Sellmeier(terms)) => {
+            IndexLawSpec::Cauchy(numbers) => (IndexLaw::Cauchy(*numbers), key.field("cauchy")),
+            IndexLawSpec::Sellmeier(terms) => {
                 (IndexLaw::Sellmeier(terms.clone()), key.field("sellmeier"))
             }
-            IndexSpec::Law(IndexLawSpec::Powers(terms)) => {
+            IndexLawSpec::Powers(terms) => {
                 let key = key.field("powers");
                 let Some(terms) = whole_powers(terms) else {
                     let message = "has a power that is not a whole number from -20 to 20";
@@ -70,11 +70,11 @@ impl Context<'_> {
                 };
                 (IndexLaw::Powers(terms), key)
             }
-            IndexSpec::Law(IndexLawSpec::ByNm(rows)) => {
+            IndexLawSpec::ByNm(rows) => {
                 let key = key.field("by_nm");
                 (IndexLaw::Table(self.spectral_table(rows.clone(), &key)?), key)
             }
-            IndexSpec::Law(IndexLawSpec::Library(name)) => {
+            IndexLawSpec::Library(name) => {
                 let key = key.field("library");
                 let Some(known) = library::media().get(name) else {
                     let message = format!("the library has no medium `{}`", name.escape_debug());
@@ -82,7 +82,7 @@ impl Context<'_> {
                 };
                 (self.hashed(known.law()), key)
             }
-            IndexSpec::Law(IndexLawSpec::Csv(file)) => {
+            IndexLawSpec::Csv(file) => {
                 let key = key.field("csv");
                 let found = self.read_by_wavelength(file, SpectralColumn::Named(&["n"]), &key)?;
                 (IndexLaw::Table(self.spectral_table(found.rows, &key)?), key)

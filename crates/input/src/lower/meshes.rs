@@ -102,7 +102,7 @@ impl Context<'_> {
             let has_grain =
                 |finish: FinishId| self.builder.scene().finishes[finish.index()].finish.has_grain();
             if finish.is_some_and(has_grain) {
-                let message = "a prism film or scatter file cannot be put on a mesh: a mesh has no direction along the guide";
+                let message = "a prism film, or a scatter file that depends on a direction along the face, cannot be put on a mesh: a mesh has no direction along the guide";
                 self.problems.error(&key.field(face), message).hint("use a sweep or a tube");
             }
             match known.iter().position(|name| *name == face) {

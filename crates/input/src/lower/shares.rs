@@ -6,14 +6,16 @@ use crate::lower::finishes::{Least, SUM_TOLERANCE};
 use crate::lower::spectra::is_spectral;
 use crate::spec::spectrum::{ShareSpec, ShareTableSpec};
 use lumiduct_base::number::format_value;
-use lumiduct_core::optics::{Coloured, Finish, PlainScatter, REFERENCE_WAVELENGTH, SpectralShare};
+use lumiduct_core::optics::{
+    Finish, REFERENCE_WAVELENGTH, ScatterLaw, SpectralFinish, SpectralShare,
+};
 use lumiduct_files::spectral::SpectralColumn;
 
 impl Context<'_> {
     /// A finish that reflects and transmits these shares of light.
     pub(super) fn with_shares(
         &mut self,
-        scatter: PlainScatter,
+        scatter: ScatterLaw,
         shares: [&ShareSpec; 2],
         least: Least,
         key: &Key,
@@ -28,7 +30,7 @@ impl Context<'_> {
         let transmittance = self.share(transmittance, &key.field("transmittance"));
         let (reflectance, transmittance) = (reflectance?, transmittance?);
         self.check_sums([&reflectance, &transmittance], least, key)?;
-        Some(Finish::Coloured(Box::new(Coloured { scatter, reflectance, transmittance })))
+        Some(Finish::Spectral(Box::new(SpectralFinish { scatter, reflectance, transmittance })))
     }
 
     fn share(&mut self, spec: &ShareSpec, key: &Key) -> Option<SpectralShare> {

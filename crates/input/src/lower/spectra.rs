@@ -196,9 +196,14 @@ pub(super) fn note_finish_tables(tables: &[FinishTable], scene: &Scene, problems
             }
             continue;
         }
-        let shares = lit_spectra(scene).map(|spectrum| spectrum.share([*first, *last]));
-        let least = shares.fold(1.0, f64::min);
-        if least < 1.0 - BEYOND {
+        let inside = lit_spectra(scene).map(|spectrum| spectrum.share([*first, *last]));
+        let inside: Vec<f64> = inside.collect();
+        let least = inside.iter().copied().fold(1.0, f64::min);
+        if !inside.is_empty() && inside.iter().all(|share| *share <= 0.0) {
+            problems
+                .error(key, format!("no source emits light from {range}, where it has values"))
+                .hint("give values for the wavelengths of the sources; they are in nm");
+        } else if least < 1.0 - BEYOND {
             let message = format!(
                 "{} of the light of a source is outside of {range}; there the value at the end applies",
                 format_percent(1.0 - least)

@@ -12,7 +12,8 @@ pub struct StackSpec {
     /// same layers in the opposite order.
     #[schemars(length(min = 1, max = 200))]
     pub layers: Vec<LayerSpec>,
-    /// Wavelength at which the stack acts in a scene without spectra. Omitted: 555, as everything else there. In a scene with
+    /// Wavelength at which the stack acts in a scene without spectra. Omitted: 555, as everything else there; media keep their
+    /// index at 555 nm in any case. In a scene with
     /// spectra it acts at the wavelength of each path, and this key is refused.
     #[schemars(range(min = 100.0, max = 20_000.0))]
     pub wavelength_nm: Option<f64>,

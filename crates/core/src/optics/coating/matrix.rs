@@ -72,7 +72,7 @@ struct FilmPhase {
     /// sin δ/δ.
     sinc: Complex,
     /// Square of what they are divided by, inverse: exp(2 Im δ), 1.
-    kept: f64,
+    decay_squared: f64,
 }
 
 impl FilmPhase {
@@ -80,16 +80,20 @@ impl FilmPhase {
         let (sin, cos) = phase.re.sin_cos();
         let exponent = 2.0 * phase.im;
         // 1 - exp(2 Im δ); most films are clear.
-        let (kept, less) =
+        let (decay_squared, one_minus_decay_squared) =
             if exponent == 0.0 { (1.0, 0.0) } else { (exponent.exp(), -exponent.exp_m1()) };
-        let sum = 1.0 + kept;
+        let sum = 1.0 + decay_squared;
         let sinc = if phase.norm_squared() < SMALL_PHASE * SMALL_PHASE {
             let series = Complex::real(1.0) - (phase * phase).scaled(1.0 / 6.0);
-            series.scaled(kept.sqrt())
+            series.scaled(decay_squared.sqrt())
         } else {
-            Complex::new(0.5 * sum * sin, -0.5 * less * cos) * phase.inverse()
+            Complex::new(0.5 * sum * sin, -0.5 * one_minus_decay_squared * cos) * phase.inverse()
         };
-        Self { cos: Complex::new(0.5 * sum * cos, 0.5 * less * sin), sinc, kept }
+        Self {
+            cos: Complex::new(0.5 * sum * cos, 0.5 * one_minus_decay_squared * sin),
+            sinc,
+            decay_squared,
+        }
     }
 }
 
@@ -110,7 +114,7 @@ impl WaveFields {
     fn before(&self, phase: &FilmPhase, sine_over: Complex, sine_times: Complex) -> Self {
         let electric = phase.cos * self.electric + (sine_over * self.magnetic).times_i();
         let magnetic = (sine_times * self.electric).times_i() + phase.cos * self.magnetic;
-        let scale = self.scale * phase.kept;
+        let scale = self.scale * phase.decay_squared;
         let size = electric.norm_squared() + magnetic.norm_squared();
         if size < LARGE_FIELD {
             return Self { electric, magnetic, scale };

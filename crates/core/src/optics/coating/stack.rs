@@ -79,6 +79,7 @@ impl LayerStack {
         let (cos, wavelength) = (incidence.cos(), self.wavelength.unwrap_or(incidence.wavelength));
         let films = layers.map(|layer| layer.film(wavelength));
         let shares = matrix::shares(films, cos, [index_from, index_to]).unpolarised();
+        debug_assert!(!shares.reflected.is_nan(), "{self:?} at {wavelength} nm");
         // Rounding makes no light and, in clear stacks, loses none.
         let reflected = shares.reflected.min(1.0);
         // By the same rule as refracted directions.

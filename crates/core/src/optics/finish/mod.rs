@@ -8,7 +8,6 @@
 
 mod absorber;
 mod coated;
-pub(crate) mod coloured;
 pub(crate) mod faces;
 mod gaussian_dielectric;
 mod gaussian_sheet;
@@ -22,6 +21,7 @@ pub(crate) mod model;
 mod open;
 mod prism_film;
 mod smooth;
+pub(crate) mod spectral;
 mod specular;
 mod stack;
 mod tabulated;
@@ -31,7 +31,6 @@ mod testing;
 use crate::optics::bsdf::sheet::{MeasuredSheet, SheetSide};
 use crate::optics::finish::absorber::Absorber;
 use crate::optics::finish::coated::Coated;
-use crate::optics::finish::coloured::{Coloured, PlainScatter};
 use crate::optics::finish::gaussian_dielectric::GaussianDielectric;
 use crate::optics::finish::gaussian_sheet::GaussianSheet;
 use crate::optics::finish::haze::Haze;
@@ -44,6 +43,7 @@ use crate::optics::finish::model::{FinishModel, Spread};
 use crate::optics::finish::open::Open;
 use crate::optics::finish::prism_film::MetFilm;
 use crate::optics::finish::smooth::SmoothInterface;
+use crate::optics::finish::spectral::{ScatterLaw, SpectralFinish};
 use crate::optics::finish::specular::Specular;
 use crate::optics::finish::stack::Stacked;
 use crate::optics::finish::tabulated::Tabulated;
@@ -115,7 +115,7 @@ pub enum Finish {
     /// the medium behind.
     Stack(Arc<LayerStack>),
     /// A mirror, a diffuser or a Gaussian sheet with shares by wavelength.
-    Coloured(Box<Coloured>),
+    Spectral(Box<SpectralFinish>),
     /// A rough interface or mirror of small facets.
     Microfacet(Microfacet),
     /// Haze about discrete directions.
@@ -187,7 +187,7 @@ macro_rules! ask {
                 let $finish = Stacked { stack };
                 $answer
             }
-            Finish::Coloured($finish) => $answer,
+            Finish::Spectral($finish) => $answer,
             Finish::Microfacet($finish) => $answer,
             Finish::Haze($finish) => $answer,
             Finish::PrismFilm { film, face } => {
@@ -208,13 +208,11 @@ macro_rules! ask {
 
 impl Finish {
     /// A finish with constant shares, 0..=1 together.
-    pub fn with_shares(scatter: PlainScatter, [reflectance, transmittance]: [f64; 2]) -> Self {
+    pub fn with_shares(scatter: ScatterLaw, [reflectance, transmittance]: [f64; 2]) -> Self {
         match scatter {
-            PlainScatter::Specular => Self::Specular { reflectance, transmittance },
-            PlainScatter::Lambertian => Self::Lambertian { reflectance, transmittance },
-            PlainScatter::Gaussian(lobe) => {
-                Self::GaussianSheet { lobe, reflectance, transmittance }
-            }
+            ScatterLaw::Specular => Self::Specular { reflectance, transmittance },
+            ScatterLaw::Lambertian => Self::Lambertian { reflectance, transmittance },
+            ScatterLaw::Gaussian(lobe) => Self::GaussianSheet { lobe, reflectance, transmittance },
         }
     }
 
@@ -224,6 +222,15 @@ impl Finish {
             return parts.iter().flat_map(|(_, part)| part.measured_sheets()).collect();
         }
         if let Self::MeasuredSheet { sheet, .. } = self { vec![sheet] } else { Vec::new() }
+    }
+
+    /// Whether it, or a part of it, is a whole sheet: what light meets from behind belongs to it.
+    pub fn is_of_both_sides(&self) -> bool {
+        match self {
+            Self::PrismFilm { .. } | Self::MeasuredSheet { .. } | Self::Stack(_) => true,
+            Self::Mixture(parts) => parts.iter().any(|(_, part)| part.is_of_both_sides()),
+            _ => false,
+        }
     }
 
     /// The same finish as met by light from the other side, if it differs there.

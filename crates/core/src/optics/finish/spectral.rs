@@ -47,7 +47,7 @@ impl SpectralShare {
 
 /// Where a finish with shares that do not depend on the angle sends light.
 #[derive(Debug, Clone, PartialEq)]
-pub enum PlainScatter {
+pub enum ScatterLaw {
     /// Into the mirrored direction and straight on.
     Specular,
     /// By Lambert's law.
@@ -58,16 +58,16 @@ pub enum PlainScatter {
 
 /// A finish with shares by wavelength.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Coloured {
+pub struct SpectralFinish {
     /// Where it sends light.
-    pub scatter: PlainScatter,
+    pub scatter: ScatterLaw,
     /// Share that is reflected.
     pub reflectance: SpectralShare,
     /// Share that is transmitted; at every wavelength at most 1 with the reflectance.
     pub transmittance: SpectralShare,
 }
 
-impl Coloured {
+impl SpectralFinish {
     /// Its shares at a wavelength, nm.
     fn at(&self, nm: f64) -> Shares {
         Shares { reflected: self.reflectance.at(nm), transmitted: self.transmittance.at(nm) }
@@ -80,18 +80,18 @@ impl Coloured {
 
 /// The answer of the finish with some shares to a question of [`FinishModel`].
 macro_rules! ask {
-    ($coloured:expr, $shares:expr, $finish:ident => $answer:expr) => {{
+    ($spectral:expr, $shares:expr, $finish:ident => $answer:expr) => {{
         let shares = $shares;
-        match &$coloured.scatter {
-            PlainScatter::Specular => {
+        match &$spectral.scatter {
+            ScatterLaw::Specular => {
                 let $finish = Specular { shares };
                 $answer
             }
-            PlainScatter::Lambertian => {
+            ScatterLaw::Lambertian => {
                 let $finish = Lambertian { shares };
                 $answer
             }
-            PlainScatter::Gaussian(lobe) => {
+            ScatterLaw::Gaussian(lobe) => {
                 let $finish = GaussianSheet { lobe, shares };
                 $answer
             }
@@ -99,7 +99,7 @@ macro_rules! ask {
     }};
 }
 
-impl FinishModel for Coloured {
+impl FinishModel for SpectralFinish {
     fn shares(&self, incidence: &Incidence) -> Shares {
         self.met(incidence)
     }
@@ -158,18 +158,21 @@ mod tests {
     use crate::optics::Finish;
     use crate::optics::finish::testing::{assert_sound, incidence};
 
-    fn filter(scatter: PlainScatter) -> Finish {
-        let table = |rows: [[f64; 2]; 2]| SpectralTable::new(rows.to_vec()).unwrap();
-        Finish::Coloured(Box::new(Coloured {
+    fn table(rows: [[f64; 2]; 2]) -> SpectralTable {
+        SpectralTable::new(rows.to_vec()).unwrap()
+    }
+
+    fn filter(scatter: ScatterLaw) -> Finish {
+        Finish::Spectral(Box::new(SpectralFinish {
             scatter,
             reflectance: SpectralShare::Table(table([[450.0, 0.9], [650.0, 0.1]])),
             transmittance: SpectralShare::Table(table([[450.0, 0.0], [650.0, 0.8]])),
         }))
     }
 
-    fn kinds() -> [PlainScatter; 3] {
+    fn kinds() -> [ScatterLaw; 3] {
         let lobe = Gaussian::new(0.2);
-        [PlainScatter::Specular, PlainScatter::Lambertian, PlainScatter::Gaussian(lobe)]
+        [ScatterLaw::Specular, ScatterLaw::Lambertian, ScatterLaw::Gaussian(lobe)]
     }
 
     #[test]
@@ -192,11 +195,16 @@ mod tests {
                     Finish::with_shares(scatter.clone(), [found.reflected, found.transmitted]);
                 let out = DVec3::new(0.3, 0.2, 0.5).normalize();
                 assert_eq!(finish.evaluate(&met, out), alike.evaluate(&met, out));
-                assert_eq!(finish.spread(), alike.spread());
             }
-            assert_eq!(finish.passes_straight(), scatter != PlainScatter::Lambertian);
+            assert_eq!(finish.passes_straight(), scatter != ScatterLaw::Lambertian);
+            let passes_blue = SpectralFinish {
+                scatter: scatter.clone(),
+                reflectance: SpectralShare::Constant(0.0),
+                transmittance: SpectralShare::Table(table([[450.0, 0.8], [500.0, 0.0]])),
+            };
+            assert_eq!(passes_blue.passes_straight(), scatter != ScatterLaw::Lambertian);
             let blue = Incidence { wavelength: 450.0, ..incidence(0.4, [1.0, 1.0]) };
-            assert_eq!(finish.only_mirrors(&blue), scatter == PlainScatter::Specular);
+            assert_eq!(finish.only_mirrors(&blue), scatter == ScatterLaw::Specular);
         }
     }
 }

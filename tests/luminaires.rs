@@ -289,6 +289,37 @@ fn a_file_comes_back_from_source_and_goniometer_within_its_errors() {
     }
 }
 
+#[test]
+fn files_of_a_cut_off_do_not_overshoot_and_say_where_they_cannot_follow() {
+    // 1000 cd within 60 deg of the axis.
+    let flux = 1000.0 * PI;
+    let text = format!(
+        "[sources.lamp.point]\nflux_lm = {flux}\nemission = {{ cone_half_angle_deg = 60 }}\n[sensors.far]\n\
+         goniometer = {{ c_step_deg = 360, gamma_step_deg = 2.5 }}\nluminaire = {{}}\n"
+    );
+    let settings =
+        Settings { paths: Some(400_000), estimator: Some(Request::Forward), ..Settings::default() };
+    let job = traced::load(&text, &settings);
+    let measures = traced::measures(&job);
+    let origin = LuminaireOrigin { title: "Cone", hash: "1", date: None, version: "0" };
+    let found = MeasuredLuminaire::new(&job.exports.luminaires[0], &measures, &origin).unwrap();
+    let table = &found.luminaire.intensities;
+    for (gamma, value) in table.angles_deg().iter().zip(table.plane(0)) {
+        let expected = match gamma {
+            gamma if *gamma <= 55.0 => 970.0..1030.0,
+            gamma if *gamma >= 65.0 => 0.0..1.0,
+            _ => 0.0..1030.0,
+        };
+        assert!(expected.contains(value), "{value} cd at {gamma} deg");
+    }
+    assert!((table.flux() / flux - 1.0).abs() < 1e-6);
+    let remarks = found.remarks.join("; ");
+    assert!(
+        remarks.contains("the light changes within the steps of the table (5 deg): at 58.75 deg"),
+        "{remarks}"
+    );
+}
+
 /// Illuminance times distance squared, cd, at an angle to the axis of a Lambertian disk with this luminance, cd/mm², on a
 /// sphere about its middle; sizes in mm.
 fn disk_on_sphere(luminance: f64, disk: f64, sphere: f64, gamma: f64) -> f64 {

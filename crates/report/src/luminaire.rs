@@ -9,7 +9,7 @@ use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_core::measure::{IntensityTable, Measures, Status};
 use lumiduct_files::luminaire::{
     CellMeans, FileGeneration, FittedIntensities, LampFlux, Luminaire, LuminaireColour,
-    LuminaireFormat, asymmetry, fit, written,
+    LuminaireFormat, Misfit, asymmetry, fit, written,
 };
 use lumiduct_input::LuminaireExport;
 use ndarray::Array2;
@@ -33,6 +33,8 @@ pub struct MeasuredLuminaire {
     pub distance_mm: Option<f64>,
     /// Standard errors of its intensities, planes by angles, cd.
     pub std_errors: Array2<f64>,
+    /// Share of its light above 90°, 1.
+    pub upward_share: f64,
     /// Sentences for the user.
     pub remarks: Vec<String>,
 }
@@ -77,7 +79,8 @@ impl MeasuredLuminaire {
             None => LampFlux::Absolute,
         };
         let asymmetry = asymmetry(&means, export.layout.symmetry);
-        let mut remarks = remarks(export, readings, &fitted, asymmetry);
+        let upward_share = means.upward_share();
+        let mut remarks = remarks(export, readings, &fitted, [asymmetry, upward_share]);
         let FittedIntensities { intensities, std_errors, .. } = fitted;
         let colour = colour(export, measures);
         let distance_mm = readings.radius_mm;
@@ -93,8 +96,15 @@ impl MeasuredLuminaire {
             intensities,
         };
         let (sensor, formats) = (export.sensor.clone(), export.formats.clone());
-        let mut found =
-            Self { sensor, formats, luminaire, distance_mm, std_errors, remarks: Vec::new() };
+        let mut found = Self {
+            sensor,
+            formats,
+            luminaire,
+            distance_mm,
+            std_errors,
+            upward_share,
+            remarks: Vec::new(),
+        };
         remarks.extend(export.formats.iter().flat_map(|format| found.left_out(*format)));
         found.remarks = remarks;
         Ok(found)
@@ -128,9 +138,9 @@ fn remarks(
     export: &LuminaireExport,
     readings: &IntensityTable,
     fitted: &FittedIntensities,
-    asymmetry: f64,
+    [asymmetry, upward_share]: [f64; 2],
 ) -> Vec<String> {
-    let &FittedIntensities { ref intensities, added_share, .. } = fitted;
+    let &FittedIntensities { added_share, misfit, .. } = fitted;
     let mut remarks = Vec::new();
     let mut remark = |text: String| {
         remarks.push(format!("luminaire files of `{}`: {text}", export.sensor));
@@ -153,6 +163,14 @@ fn remarks(
                 rms of the intensities, more than noise explains; choose a lower symmetry"
         ));
     }
+    if let Some(Misfit { candela, angle_deg }) = misfit {
+        let step = format_value(180.0 / export.layout.angle_segments as f64);
+        let (candela, angle_deg) = (format_value(candela), format_value(angle_deg));
+        remark(format!(
+            "the light changes within the steps of the table ({step} deg): at {angle_deg} deg the table differs by {candela} cd from the mean \
+                over a cell of the goniometer, which the errors in the files do not contain; smaller cells allow smaller steps"
+        ));
+    }
     let bias = readings.biases.iter().flatten().copied().fold(0.0, f64::max);
     if bias > 0.0 {
         let bias = format_value(bias);
@@ -160,13 +178,12 @@ fn remarks(
             "cells of the goniometer have a bias of up to {bias} cd, which the errors in the files do not contain"
         ));
     }
-    let upward = intensities.flux_between(90.0, 180.0) / intensities.flux();
     match export.opening {
         None => remark(
             "without the key `opening` they state a point, which has no luminance".to_owned(),
         ),
-        Some(_) if upward > NEGLIGIBLE_FLUX => {
-            let share = format_percent(upward);
+        Some(_) if upward_share > NEGLIGIBLE_FLUX => {
+            let share = format_percent(upward_share);
             remark(format!(
                 "{share} of the light leaves above 90 deg, which a flat opening cannot emit; no luminance is given"
             ));

@@ -1,6 +1,7 @@
 //! How much the planes that a symmetry treats as equal differ.
 
-use crate::luminaire::fit::{CellMeans, ring_edges};
+use crate::luminaire::fit::CellMeans;
+use crate::luminaire::fit::nodes::ring_edges;
 use crate::luminaire::intensities::PlaneSymmetry;
 use lumiduct_base::math::linear_over_ring;
 use std::collections::BTreeMap;

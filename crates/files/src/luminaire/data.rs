@@ -1,5 +1,7 @@
 //! What a luminaire file says.
 
+use crate::luminaire::error::LuminaireError;
+use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::generation::FileGeneration;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use lumiduct_base::number::format_value;
@@ -114,10 +116,19 @@ const DARK_POLE: f64 = 1e-3;
 
 /// Light output ratio above which a file contradicts itself, 1.
 const MOST_OUTPUT: f64 = 1.02;
+/// Light output ratio that only a wrong unit or a wrong flux of the lamps can give, 1.
+const IMPOSSIBLE_OUTPUT: f64 = 10.0;
+/// Longest opening of a luminaire, mm; beyond it a remark is due.
+const LONGEST_OPENING: f64 = 10_000.0;
 
 impl ReadLuminaire {
-    /// A luminaire with remarks, and further ones on its light.
-    pub(crate) fn new(luminaire: Luminaire, table_line: usize, mut remarks: Vec<String>) -> Self {
+    /// A luminaire with remarks, and further ones on its light and its size.
+    pub(crate) fn new(
+        luminaire: Luminaire,
+        format: LuminaireFormat,
+        table_line: usize,
+        mut remarks: Vec<String>,
+    ) -> Result<Self, LuminaireError> {
         let Luminaire { intensities, .. } = &luminaire;
         let ends = |all: &[f64]| [all[0], all[all.len() - 1]];
         let [low, high] = ends(intensities.angles_deg());
@@ -139,9 +150,22 @@ impl ReadLuminaire {
         }
         if let Some(ratio) = luminaire.light_output_ratio().filter(|ratio| *ratio > MOST_OUTPUT) {
             let percent = 100.0 * ratio;
-            remarks.push(format!("the luminaire sends {percent:.0} % of the light of its lamps"));
+            let text = format!("the luminaire sends {percent:.0} % of the light of its lamps");
+            if ratio > IMPOSSIBLE_OUTPUT {
+                let problem = format!("{text}; correct the flux of its lamps or the multiplier");
+                return Err(LuminaireError::Violated { format, line: table_line, problem });
+            }
+            remarks.push(text);
         }
-        Self { luminaire, table_line, remarks }
+        let Opening { along_c0_mm, along_c90_mm, height_mm, .. } = luminaire.opening;
+        let longest = along_c0_mm.max(along_c90_mm).max(height_mm);
+        if longest > LONGEST_OPENING {
+            let metres = longest / 1000.0;
+            remarks.push(format!(
+                "the luminous opening is {metres} m long; check the unit of its size"
+            ));
+        }
+        Ok(Self { luminaire, table_line, remarks })
     }
 }
 

@@ -4,12 +4,23 @@
 //! likelihood of Poisson counts, by expectation maximisation (Shepp & Vardi, IEEE Trans. Med. Imaging 1 (1982) 113). From the means yᵢ over
 //! cells of solid angles Ωᵢ, in which nodes have shares aᵢⱼ, the values xⱼ follow by xⱼ ← xⱼ Σᵢ Ωᵢ aᵢⱼ yᵢ / Σₖ aᵢₖ xₖ / Σᵢ Ωᵢ aᵢⱼ. A
 //! distribution that is linear between the nodes is recovered from cells without noise; a dark node between bright ones keeps some
-//! 0.3 % of their intensity. Every step keeps the flux. Errors are those of a fit by least squares, which is linear in the cells.
+//! 0.3 % of their intensity. Beside edges that a table cannot hold, values stay within those of the cells around (`limit`). Every step
+//! keeps the flux. Errors are those of a fit by least squares, which is linear in the cells.
+
+mod likely;
+mod limit;
+pub(crate) mod nodes;
 
 use crate::luminaire::error::LuminaireError;
+use crate::luminaire::fit::likely::most_likely;
+use crate::luminaire::fit::nodes::{
+    NodeGrid, NodeShares, Planes, ring_edges, ring_mean, sector_mean,
+};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use lumiduct_base::math::{linear_over_ring, solve_rows};
 use ndarray::{Array2, ArrayView2};
+use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Fewest cells of a segment of the table: with fewer its nodes would not be determined.
 const CELLS_PER_SEGMENT: usize = 2;
@@ -24,6 +35,16 @@ pub struct CellMeans<'a> {
     pub candela: ArrayView2<'a, f64>,
     /// Standard errors of independent cells, same layout, cd.
     pub std_errors: ArrayView2<'a, f64>,
+}
+
+impl CellMeans<'_> {
+    /// Share of the flux in the rings above 90°, 1.
+    pub fn upward_share(&self) -> f64 {
+        let rings = self.candela.nrows();
+        let upward = flux_of_rings(self, rings.div_ceil(2)..rings);
+        let all = flux_of(self);
+        if all > 0.0 { upward / all } else { 0.0 }
+    }
 }
 
 /// The layout of a table.
@@ -87,6 +108,44 @@ pub struct FittedIntensities {
     pub std_errors: Array2<f64>,
     /// Flux of the table above that of the cells, because negative cell means are taken as zero, as a share of the latter, 1.
     pub added_share: f64,
+    /// Where the table differs most from the cells, averaged over those that its symmetry takes as equal, if noise does not explain
+    /// it: there the light changes faster than a table of its steps can.
+    pub misfit: Option<Misfit>,
+}
+
+/// A difference between the mean over a cell and that of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// The size of the difference, cd.
+    pub candela: f64,
+    /// The middle of the ring of the cell, deg.
+    pub angle_deg: f64,
+}
+
+/// Standard errors of a cell that noise explains.
+const NOISE: f64 = 4.0;
+/// Share of the peak by which a table may differ from cells, 1.
+const NEGLIGIBLE_MISFIT: f64 = 0.01;
+
+impl Misfit {
+    fn of(values: &Array2<f64>, means: &CellMeans<'_>, grid: &NodeGrid) -> Option<Self> {
+        let peak = values.iter().copied().fold(0.0, f64::max);
+        let step = 180.0 / grid.of_ring.len() as f64;
+        let equal = grid.equal_sectors();
+        let differences =
+            (0..grid.of_ring.len()).flat_map(|ring| equal.iter().map(move |own| (ring, own)));
+        let differences = differences.filter_map(|(ring, equal)| {
+            let count = equal.len() as f64;
+            let cells = || equal.iter().map(|sector| [ring, *sector]);
+            let mean = cells().map(|cell| means.candela[cell].max(0.0)).sum::<f64>() / count;
+            let variance: f64 = cells().map(|cell| means.std_errors[cell].powi(2)).sum();
+            let candela = (grid.mean(values, [ring, equal[0]]) - mean).abs();
+            let explained = NOISE * variance.sqrt() / count + NEGLIGIBLE_MISFIT * peak;
+            let angle_deg = step * (ring as f64 + 0.5);
+            (candela > explained).then_some(Self { candela, angle_deg })
+        });
+        differences.max_by(|a, b| a.candela.total_cmp(&b.candela))
+    }
 }
 
 /// Fits a table to cell means.
@@ -105,8 +164,10 @@ pub fn fit(
     }
     let step = 180.0 / layout.angle_segments as f64;
     let angles_deg = (0..=layout.angle_segments).map(|place| step * place as f64).collect();
-    let planes = Planes::of(layout);
-    let values = most_likely(means, layout, &planes);
+    let planes = Planes::of(layout.symmetry, layout.plane_segments);
+    let grid = NodeGrid::new([rings, sectors], layout.angle_segments, &planes);
+    let values = most_likely(means.candela, means.std_errors, &grid, &planes);
+    let misfit = Misfit::of(&values, means, &grid);
     let candela = values.into_iter().collect();
     let intensities =
         Intensities::new(layout.symmetry, planes.degrees.clone(), angles_deg, candela)?;
@@ -115,106 +176,24 @@ pub fn fit(
     Ok(FittedIntensities {
         std_errors: std_errors(means, layout, &planes)?,
         intensities,
+        misfit,
         added_share: if flux > 0.0 { added / flux } else { 0.0 },
     })
 }
 
 /// Flux of the cells, lm.
 fn flux_of(means: &CellMeans<'_>) -> f64 {
+    flux_of_rings(means, 0..means.candela.nrows())
+}
+
+/// Flux of the cells of some rings, lm.
+fn flux_of_rings(means: &CellMeans<'_>, some: Range<usize>) -> f64 {
     let (rings, sectors) = means.candela.dim();
-    let rows = means.candela.rows().into_iter().enumerate();
-    let flux = |(ring, row): (usize, ndarray::ArrayView1<'_, f64>)| {
-        row.sum() * std::f64::consts::TAU / sectors as f64
+    let flux = |ring: usize| {
+        means.candela.row(ring).sum() * TAU / sectors as f64
             * linear_over_ring(ring_edges(ring, rings), [1.0; 2])
     };
-    rows.map(flux).sum()
-}
-
-/// Edges of a ring, rad.
-pub(crate) fn ring_edges(ring: usize, rings: usize) -> [f64; 2] {
-    [ring, ring + 1].map(|edge| std::f64::consts::PI * edge as f64 / rings as f64)
-}
-
-/// The planes of a table.
-struct Planes {
-    /// Within the range of the symmetry, deg.
-    degrees: Vec<f64>,
-    /// For each of the whole circle, the one within the range that equals it.
-    of_circle: Vec<usize>,
-}
-
-impl Planes {
-    fn of(layout: &TableLayout) -> Self {
-        let count = match layout.symmetry {
-            PlaneSymmetry::Rotational => 1,
-            PlaneSymmetry::None
-            | PlaneSymmetry::Quadrants
-            | PlaneSymmetry::AboutC0
-            | PlaneSymmetry::AboutC90 => layout.plane_segments,
-        };
-        let folded = |place: usize| layout.symmetry.folded(360.0 * place as f64 / count as f64);
-        let mut degrees: Vec<f64> = (0..count).map(folded).collect();
-        degrees.sort_by(f64::total_cmp);
-        degrees.dedup_by(|a, b| (*a - *b).abs() < SAME_PLANE);
-        let find = |plane: f64| degrees.partition_point(|own| *own < plane - SAME_PLANE);
-        let of_circle = (0..count).map(|place| find(folded(place))).collect();
-        Self { degrees, of_circle }
-    }
-}
-
-/// Planes closer than this are the same, deg.
-const SAME_PLANE: f64 = 1e-9;
-/// Steps of the maximisation. The slowest deviation alternates in both angles: with two cells a segment it loses 1/16 in each step.
-const STEPS: usize = 200;
-/// Share of the peak below which a value is zero, 1.
-const ROUNDING: f64 = 1e-9;
-
-/// The most likely values, planes by angles.
-fn most_likely(means: &CellMeans<'_>, layout: &TableLayout, planes: &Planes) -> Array2<f64> {
-    let (rings, sectors) = means.candela.dim();
-    let of_ring: Vec<NodeShares> = (0..rings).map(|ring| ring_mean(ring, rings, layout)).collect();
-    let of_sector: Vec<NodeShares> = (0..sectors)
-        .map(|sector| {
-            let mean = sector_mean(sector, sectors, planes.of_circle.len());
-            NodeShares { nodes: mean.nodes.map(|node| planes.of_circle[node]), ..mean }
-        })
-        .collect();
-    let shape = (planes.degrees.len(), layout.angle_segments + 1);
-    // Sums over cells of their solid angles times a factor of each, by the shares of the nodes.
-    let collected = |factor: &dyn Fn(usize, usize) -> f64| {
-        let mut sums = Array2::zeros(shape);
-        for (ring, along) in of_ring.iter().enumerate() {
-            for (sector, across) in of_sector.iter().enumerate() {
-                let weight = along.weight * factor(ring, sector);
-                for ((angle, plane), share) in along.pairs(across) {
-                    sums[[plane, angle]] += weight * share;
-                }
-            }
-        }
-        // All planes meet at the poles.
-        for pole in [0, layout.angle_segments] {
-            let sum = sums.column(pole).sum();
-            sums.column_mut(pole).fill(sum);
-        }
-        sums
-    };
-    let solid_angles = collected(&|_, _| 1.0);
-    let mean = |ring: usize, sector: usize| means.candela[[ring, sector]].max(0.0);
-    let mut values = collected(&mean) / &solid_angles;
-    for _ in 0..STEPS {
-        let ratio = |ring: usize, sector: usize| {
-            let pairs = of_ring[ring].pairs(&of_sector[sector]);
-            let own: f64 =
-                pairs.map(|((angle, plane), share)| share * values[[plane, angle]]).sum();
-            if own > 0.0 { mean(ring, sector) / own } else { 0.0 }
-        };
-        let factors = collected(&ratio) / &solid_angles;
-        values *= &factors;
-    }
-    // Dark nodes beside bright ones shrink with every step and never reach zero.
-    let peak = values.iter().copied().fold(0.0, f64::max);
-    values.mapv_inplace(|value| if value < ROUNDING * peak { 0.0 } else { value });
-    values
+    some.map(flux).sum()
 }
 
 /// Standard errors of the values by least squares, planes by angles.
@@ -229,7 +208,7 @@ fn std_errors(
     if !means.std_errors.iter().all(|error| error.is_finite()) {
         return Ok(Array2::from_elem(shape, f64::INFINITY));
     }
-    let along = weights(shape.1, rings, |ring| ring_mean(ring, rings, layout))?;
+    let along = weights(shape.1, rings, |ring| ring_mean(ring, rings, layout.angle_segments))?;
     let circle = planes.of_circle.len();
     let of_circle = weights(circle, sectors, |sector| sector_mean(sector, sectors, circle))?;
     let mut across = Array2::zeros((shape.0, sectors));
@@ -251,27 +230,6 @@ fn std_errors(
     Ok(variances.mapv(f64::sqrt))
 }
 
-/// The mean over a ring.
-fn ring_mean(ring: usize, rings: usize, layout: &TableLayout) -> NodeShares {
-    let per_segment = rings / layout.angle_segments;
-    let edges = ring_edges(ring, rings);
-    let solid_angle = linear_over_ring(edges, [1.0; 2]);
-    let place = ring % per_segment;
-    let ends = [place, place + 1].map(|edge| edge as f64 / per_segment as f64);
-    let next = linear_over_ring(edges, ends) / solid_angle;
-    let segment = ring / per_segment;
-    NodeShares { nodes: [segment, segment + 1], shares: [1.0 - next, next], weight: solid_angle }
-}
-
-/// The mean over a sector, with planes over the whole circle.
-fn sector_mean(sector: usize, sectors: usize, planes: usize) -> NodeShares {
-    let per_segment = sectors / planes;
-    let next = ((sector % per_segment) as f64 + 0.5) / per_segment as f64;
-    let segment = sector / per_segment;
-    let nodes = [segment, (segment + 1) % planes];
-    NodeShares { nodes, shares: [1.0 - next, next], weight: 1.0 }
-}
-
 fn expect_segments(cells: usize, segments: usize, what: &str) -> Result<(), LuminaireError> {
     if segments > MOST_SEGMENTS {
         let problem = format!("{segments} steps in {what}, expected at most {MOST_SEGMENTS}");
@@ -284,26 +242,6 @@ fn expect_segments(cells: usize, segments: usize, what: &str) -> Result<(), Lumi
         return Err(LuminaireError::NoDistribution(problem));
     }
     Ok(())
-}
-
-/// The mean over a cell of what is linear between two nodes.
-#[derive(Debug, Clone, Copy)]
-struct NodeShares {
-    nodes: [usize; 2],
-    shares: [f64; 2],
-    /// Weight of the cell in the fit.
-    weight: f64,
-}
-
-impl NodeShares {
-    /// The nodes of a cell, (own, other), and their shares.
-    fn pairs(&self, other: &Self) -> impl Iterator<Item = ((usize, usize), f64)> {
-        let places = [(0, 0), (0, 1), (1, 0), (1, 1)];
-        let (own, across) = (*self, *other);
-        places.into_iter().map(move |(along, over)| {
-            ((own.nodes[along], across.nodes[over]), own.shares[along] * across.shares[over])
-        })
-    }
 }
 
 /// Weights of cells in the values at nodes, nodes by cells: (A W Aᵀ)⁻¹ A W, where A has the shares of the nodes in the cells.

@@ -78,7 +78,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         colour: LuminaireColour::default(),
         intensities,
     };
-    Ok(ReadLuminaire::new(luminaire, table_line, remarks))
+    ReadLuminaire::new(luminaire, LuminaireFormat::Ies, table_line, remarks)
 }
 
 /// What a table of intensities says, and the line of its first one.

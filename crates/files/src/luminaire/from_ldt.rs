@@ -107,7 +107,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     }
     let generation = FileGeneration::Undefined;
     let luminaire = Luminaire { texts, generation, lamps, power_w, opening, colour, intensities };
-    Ok(ReadLuminaire::new(luminaire, table_line, remarks))
+    ReadLuminaire::new(luminaire, LuminaireFormat::Ldt, table_line, remarks)
 }
 
 /// Remarks where angles do not have the step that the file states; 0 states none.

@@ -49,7 +49,7 @@ mod xml_text;
 pub use asymmetry::asymmetry;
 pub use data::{LampFlux, Luminaire, LuminaireColour, Opening, ReadLuminaire, WrittenLuminaire};
 pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};
-pub use fit::{CellMeans, FittedIntensities, TableLayout, fit};
+pub use fit::{CellMeans, FittedIntensities, Misfit, TableLayout, fit};
 pub use format::LuminaireFormat;
 pub use generation::FileGeneration;
 pub use intensities::{Intensities, PlaneSymmetry};

@@ -191,12 +191,18 @@ fn what_contradicts_itself_or_is_lost_is_remarked_on() {
     for (old, new, words) in [
         ("1 -1 1", "1 1000 1", "313 % of the light of its lamps"),
         ("1 -1 1", "1 -500 1", "-500 lm"),
+        ("0.05 0.08 0", "50 80 0", "the luminous opening is 80 m long"),
         ("1 1 12.5", "1 1 -5", "power of -5 W"),
         ("0.05 0.08 0", "-0.05 0.08 -0.05", "a cylinder that lies"),
         ("80 90\r\n", "80 85\r\n", "beyond them the light is taken as 0"),
     ] {
         assert!(remarks(old, new).contains(words), "{new}: {}", remarks(old, new));
     }
+    let hot = ies(&LAMBERT.replace("1 -1 1", "1 10 1")).unwrap_err().to_string();
+    assert!(
+        hot.contains("line 14") && hot.contains("% of the light of its lamps; correct"),
+        "{hot}"
+    );
     // All planes meet at the nadir.
     let crossing = "IESNA:LM-63-2002\r\nTILT=NONE\r\n1 -1 1 3 2 1 2 0.05 0.08 0\r\n1 1 12.5\r\n0 45 90\r\n0 90\r\n\
         100 200 0\r\n130 200 0\r\n";

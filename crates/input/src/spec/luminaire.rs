@@ -47,7 +47,7 @@ pub enum LuminaireExtent {
 }
 
 /// Luminaire files of what a goniometer measures, for lighting programs: a table of luminous intensities whose interpolation
-/// fits the cells best; at a finite distance, of illuminance times distance squared. The polar axis is the nadir; C0 is along the local +x, C90 along the local -y.
+/// fits the cells best, without overshoot at edges of the light; at a finite distance, of illuminance times distance squared. The polar axis is the nadir; C0 is along the local +x, C90 along the local -y.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LuminaireExportSpec {
     /// The files: `SENSOR.ies` in IES LM-63-2002 or, with `ies_2019`, in LM-63-2019, which says that the values are computed;

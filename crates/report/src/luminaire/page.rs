@@ -43,7 +43,7 @@ pub(crate) fn blocks(luminaires: &[MeasuredLuminaire], sensor: &str) -> Vec<Bloc
     blocks.push(Block::Words { text: "Luminous intensities in cd:".into() });
     blocks.push(candela_table(found));
     blocks.push(zonal_flux(&found.luminaire));
-    if let Some(area) = emitting_area_m2(&found.luminaire) {
+    if let Some(area) = emitting_area_m2(found) {
         blocks.extend(luminances(&found.luminaire, area));
         blocks.extend(ugr_table(&found.luminaire, area));
     }
@@ -229,10 +229,8 @@ fn ugr_table(luminaire: &Luminaire, area: f64) -> Vec<Block> {
 }
 
 /// Area of the opening, m², if it emits all light; `None` for a point, a line, or with light that a flat opening cannot emit.
-fn emitting_area_m2(luminaire: &Luminaire) -> Option<f64> {
-    let Luminaire { opening, intensities, .. } = luminaire;
-    let upward = intensities.flux_between(90.0, 180.0);
-    area_m2(opening).filter(|_| upward <= NEGLIGIBLE_FLUX * intensities.flux())
+fn emitting_area_m2(found: &MeasuredLuminaire) -> Option<f64> {
+    area_m2(&found.luminaire.opening).filter(|_| found.upward_share <= NEGLIGIBLE_FLUX)
 }
 
 /// Area of a flat opening, m²; `None` for a point or a line.
@@ -272,6 +270,7 @@ mod tests {
             },
             distance_mm: None,
             std_errors: Array2::zeros((1, 181)),
+            upward_share: 0.0,
             remarks: Vec::new(),
         }
     }

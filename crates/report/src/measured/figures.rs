@@ -35,7 +35,7 @@ pub struct SideFigures {
     /// For intensities only: the flux of the cells, lm.
     pub flux_lm: Option<f64>,
     /// For intensities only: beam angles in the planes C0-C180 and C90-C270, deg; `None` without light at γ = 0, or where the
-    /// intensity does not fall to half of that.
+    /// intensity does not fall to half of that from there on.
     pub beams_deg: [Option<f64>; 2],
 }
 
@@ -94,14 +94,14 @@ pub(crate) fn side_figures(
 
 /// Full angle in a plane between the directions of half the intensity at γ = 0, deg.
 fn beam_angle(computed: &ComputedCells, values: &Array2<f64>, plane: f64) -> Option<f64> {
-    let centre = values.row(0).mean().filter(|centre| *centre > 0.0)?;
+    let level = BEAM_EDGE * values.row(0).mean().filter(|centre| *centre > 0.0)?;
     let halves = [plane, plane + 180.0].map(|plane| {
         let points = half_plane(computed, values, plane);
-        let edge = points.windows(2).find(|ends| ends[1][1] < BEAM_EDGE * centre)?;
+        let edge = points.windows(2).find(|ends| ends[1][1] < level)?;
         let [from, above] = edge[0];
         let [to, below] = edge[1];
-        let share = (above - BEAM_EDGE * centre) / (above - below);
-        Some(from + share * (to - from))
+        // The half-plane may be darker than the pole from its first cell on.
+        (above >= level).then(|| from + (above - level) / (above - below) * (to - from))
     });
     Some(halves[0]? + halves[1]?)
 }

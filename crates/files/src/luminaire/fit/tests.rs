@@ -110,6 +110,68 @@ fn a_sharp_edge_keeps_its_flux_and_has_no_negative_light() {
     );
 }
 
+/// Cells of 1000 cd up to an angle, deg, and of nothing beyond.
+fn cut_off(end: f64, rings: usize) -> Array2<f64> {
+    Array2::from_shape_fn((rings, 1), |(ring, _)| {
+        let [from, to] = ring_edges(ring, rings);
+        let lit = linear_over_ring([from, to.min(end.to_radians()).max(from)], [1.0; 2]);
+        1000.0 * lit / linear_over_ring([from, to], [1.0; 2])
+    })
+}
+
+#[test]
+fn a_cut_off_neither_rings_nor_loses_light() {
+    for (end, rings) in [(60.0, 72), (60.0, 360), (61.0, 72), (62.5, 72), (90.0, 72), (32.0, 144)] {
+        let cells = cut_off(end, rings);
+        let errors = cells.mapv(|value| 1e-4 * value);
+        let means = CellMeans { candela: cells.view(), std_errors: errors.view() };
+        let fit = fit(&means, &TableLayout::finest([rings, 1])).unwrap();
+        let step = 360.0 / rings as f64;
+        for (place, value) in fit.intensities.plane(0).iter().enumerate() {
+            let angle = step * place as f64;
+            let expected = match angle {
+                angle if angle <= end - step => 999.0..1001.0,
+                angle if angle >= end + step => 0.0..1e-3,
+                _ => 0.0..1001.0,
+            };
+            assert!(expected.contains(value), "{end}, {rings}: {value} cd at {angle} deg");
+        }
+        assert!((fit.intensities.flux() / flux_of(&means) - 1.0).abs() < 1e-9, "{end}, {rings}");
+        let misfit = fit.misfit.unwrap();
+        assert!((misfit.angle_deg - end).abs() < step && misfit.candela > 50.0, "{misfit:?}");
+        assert_eq!(means.upward_share(), 0.0);
+    }
+}
+
+#[test]
+fn what_passes_a_rectangle_keeps_within_its_intensity() {
+    // 45 deg wide in γ and C, with edges between the nodes and on them.
+    let cells = Array2::from_shape_fn((72, 72), |(ring, sector)| {
+        if (10..28).contains(&ring) && (5..14).contains(&sector) { 1000.0 } else { 0.0 }
+    });
+    let errors = cells.mapv(|value| 1e-4 * value);
+    let means = CellMeans { candela: cells.view(), std_errors: errors.view() };
+    let fit = fit(&means, &TableLayout::finest([72, 72])).unwrap();
+    for plane in 0..36 {
+        for value in fit.intensities.plane(plane) {
+            assert!((0.0..1001.0).contains(value), "{value}");
+        }
+    }
+    assert!((fit.intensities.flux() / flux_of(&means) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn smooth_light_has_no_misfit() {
+    // A Lambertian lamp: its table is linear over 5 deg, which is 0.1 % of its peak off.
+    let cells = Array2::from_shape_fn((72, 1), |(ring, _)| {
+        let [from, to] = ring_edges(ring, 72);
+        (0.5 * (from + to)).cos().max(0.0)
+    });
+    let errors = Array2::zeros((72, 1));
+    let means = CellMeans { candela: cells.view(), std_errors: errors.view() };
+    assert_eq!(fit(&means, &TableLayout::finest([72, 1])).unwrap().misfit, None);
+}
+
 #[test]
 fn negative_cells_count_as_dark_and_their_flux_is_told() {
     let cells = Array2::from_shape_fn((4, 1), |(ring, _)| [10.0, 10.0, -1.0, -1.0][ring]);

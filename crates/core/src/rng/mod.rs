@@ -8,10 +8,12 @@
 //! Instead of fresh numbers a path can be given recorded ones ([`Numbers`]), so that it can be repeated and varied.
 
 mod points;
+mod shares;
 
 pub(crate) use points::Points;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+pub(crate) use shares::Shares;
 
 /// The streams of a run: no two purposes share one under a seed. The lower 32 bits number sensors, where each has a
 /// stream of its own. Samples of a study and the baselines of `compare` never meet in a run.
@@ -73,6 +75,8 @@ pub enum Dimension {
     EmitPosition,
     /// Start direction of a path.
     EmitDirection,
+    /// Cell of a sensor in which a gather path starts.
+    GatherCell,
     /// Start point of a gather path on a sensor, and the point of its aim.
     GatherPosition,
     /// Start direction of a gather path.

@@ -101,7 +101,7 @@ impl Grid {
     }
 
     /// The rectangle of a cell in the chart; for a polar cell, that of the whole grid.
-    fn cell_rect(&self, cell: usize) -> ChartRect {
+    pub(crate) fn cell_rect(&self, cell: usize) -> ChartRect {
         match self {
             Self::Cartesian { rect, nu, nv } => {
                 let step = (rect.max - rect.min) / DVec2::new(*nu as f64, *nv as f64);

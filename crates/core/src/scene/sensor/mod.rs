@@ -174,16 +174,17 @@ pub struct Views {
 }
 
 impl Views {
-    /// A direction in the acceptance cone of one of the views, and all views that accept it.
+    /// A direction in the acceptance cone of a view, or of any, and all views that accept it.
     pub(crate) fn draw(
         &self,
+        view: Option<usize>,
         sampler: &mut Sampler<impl Numbers>,
     ) -> (DVec3, SmallVec<[usize; 1]>) {
         let count = self.directions.len();
-        let view = match count {
+        let view = view.unwrap_or_else(|| match count {
             1 => 0,
             _ => ((sampler.one(Dimension::GatherDirection) * count as f64) as usize).min(count - 1),
-        };
+        });
         let local = cone_direction(self.half_angle, sampler.pair(Dimension::GatherDirection));
         let away = Frame::from_axis(DVec3::ZERO, self.directions[view]).to_world(local);
         let mut accepting: SmallVec<[usize; 1]> = self.accepting(away).collect();
@@ -194,7 +195,7 @@ impl Views {
         (away, accepting)
     }
 
-    /// Density with which [`Self::draw`] gives a direction that this many views accept, 1/sr.
+    /// Density of a direction that this many views accept, where all views are drawn from equally often, 1/sr.
     pub(crate) fn density(&self, accepting: usize) -> f64 {
         let solid_angle = 2.0 * TAU * (0.5 * self.half_angle).sin().powi(2);
         accepting as f64 / (self.directions.len() as f64 * solid_angle)

@@ -32,6 +32,11 @@ impl ChartRect {
         (self.max - self.min).max(DVec2::ZERO).element_product()
     }
 
+    /// The point at these shares of width and height.
+    pub(crate) fn at(&self, shares: [f64; 2]) -> DVec2 {
+        self.min + DVec2::from(shares) * (self.max - self.min)
+    }
+
     /// The corners, counter-clockwise from the smallest.
     pub(crate) fn corners(&self) -> [DVec2; 4] {
         let (min, max) = (self.min, self.max);

@@ -54,6 +54,14 @@ impl<'s> FaceArea<'s> {
         Self { scene, pieces, area_up_to }
     }
 
+    /// Its patch, with the surface it is, if it has no other piece.
+    pub(crate) fn only_patch(&self) -> Option<(&'s Patch, Option<PrimId>)> {
+        match self.pieces[..] {
+            [AreaPiece::Patch(patch, prim)] => Some((patch, prim)),
+            _ => None,
+        }
+    }
+
     /// The whole area, mm², including the positions that [`Self::sample`] finds occupied by others.
     pub fn area(&self) -> f64 {
         self.area_up_to.last().copied().unwrap_or(0.0)

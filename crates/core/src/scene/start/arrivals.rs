@@ -9,12 +9,13 @@ use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::crossing::hit::StartSide;
 use crate::scene::shape::Toward;
 use crate::scene::start::area::{AreaPoint, FaceArea};
+use crate::scene::start::strata::{DrawnDirection, Strata, direction, numbers_in_pixel};
 use crate::scene::{
     CountedLight, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind,
     Sides, SurfaceSensor, Views,
 };
 use glam::{DVec2, DVec3};
-use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk, uniform_sphere};
+use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk};
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::PI;
 
@@ -98,28 +99,60 @@ impl<'s> Arrivals<'s> {
         Self { scene, place, aim }
     }
 
-    /// Draws a start; `None` where the draw misses the sensor or is on a side that does not count:
-    /// such a draw represents no light.
+    /// The strata of the draws: the values of the sensor, as far as starts can be drawn for one of them.
+    pub fn strata(&self) -> Strata<'s> {
+        match &self.place {
+            StartSet::Surface(sensor, area) => Strata::of_surface(sensor, area),
+            StartSet::Sphere(goniometer, _) => Strata::of_sphere(goniometer),
+        }
+    }
+
+    /// Draws a start; `None` where it misses the sensor or a side that counts: such a draw represents no light.
     pub fn draw(&self, sampler: &mut Sampler<impl Numbers>) -> Option<Arrival> {
+        self.draw_from(None, sampler)
+    }
+
+    /// Draws a start from one of its strata, which are drawn equally often; `None` as for [`Self::draw`].
+    pub fn draw_in(
+        &self,
+        (strata, stratum): (&Strata<'s>, usize),
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Arrival> {
+        self.draw_from(Some((strata, stratum)), sampler)
+    }
+
+    #[inline(always)]
+    fn draw_from(
+        &self,
+        part: Option<(&Strata<'s>, usize)>,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Arrival> {
         let wavelength = self.scene.wavelength(sampler);
         let arrival = match &self.place {
             StartSet::Surface(sensor, area) => {
-                let start = area.sample(sampler.pair(Dimension::GatherPosition))?;
+                let u = sampler.pair(Dimension::GatherPosition);
+                let (start, area) = match part {
+                    None => (area.sample(u)?, area.area()),
+                    Some((strata, stratum)) => strata.point(area, stratum, u)?,
+                };
                 let cell = sensor.grid.cell(start.uv)?;
-                let toward = self.surface_direction(sensor, &start, sampler)?;
-                self.at_surface(sensor, &start, cell, toward, area.area())
+                let view = part.and_then(|(strata, stratum)| strata.view(stratum));
+                let toward = self.surface_direction((sensor, view), &start, sampler)?;
+                self.at_surface(sensor, &start, cell, toward, area)
             }
-            StartSet::Sphere(goniometer, around) => match goniometer.radius {
-                None => self.in_far_field(goniometer, *around, sampler),
-                Some(radius) => self.on_sphere(goniometer, radius, sampler),
-            },
+            StartSet::Sphere(goniometer, around) => {
+                let cell = part.map(|(_, stratum)| stratum);
+                match goniometer.radius {
+                    None => self.in_far_field((goniometer, cell), *around, sampler),
+                    Some(radius) => self.on_sphere((goniometer, cell), radius, sampler),
+                }
+            }
         };
         arrival.map(|arrival| Arrival { wavelength, ..arrival })
     }
 
-    /// Extent of a draw of a start, as in [`Arrival::extent`], mm² sr, for a start that was not
-    /// necessarily drawn. The ray leaves the sensor against light that the sensor counts; `normal`
-    /// is that of a surface sensor.
+    /// Extent of a draw of a start by [`Self::draw`], as in [`Arrival::extent`], mm² sr, for a start that was not necessarily
+    /// drawn. The ray leaves the sensor against light that the sensor counts; `normal` is that of a surface sensor.
     pub fn extent(&self, ray: &Ray, normal: DVec3) -> f64 {
         match &self.place {
             StartSet::Surface(sensor, area) => {
@@ -166,17 +199,20 @@ impl<'s> Arrivals<'s> {
     /// density, sr, and the views that accept it.
     fn surface_direction(
         &self,
-        sensor: &SurfaceSensor,
+        (sensor, view): (&SurfaceSensor, Option<usize>),
         start: &AreaPoint,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Drawn> {
         match &sensor.seeing {
             Seeing::All => {}
             Seeing::Views(views) => {
-                return Some(view_direction(views, sensor.counts, start, sampler));
+                return Some(view_direction((views, view), sensor.counts, start, sampler));
             }
             Seeing::Pixels(pixels) => {
-                let u = sampler.pair(Dimension::GatherDirection);
+                let mut u = sampler.pair(Dimension::GatherDirection);
+                if let Some(pixel) = view {
+                    u = numbers_in_pixel(&pixels.grid, pixel, u);
+                }
                 let (dir, pixel, projected) = pixels.draw(u)?;
                 return Some(Drawn { dir, projected, views: smallvec![pixel] });
             }
@@ -234,11 +270,12 @@ impl<'s> Arrivals<'s> {
     /// A start outside of everything, in a direction of a far-field goniometer.
     fn in_far_field(
         &self,
-        goniometer: &Goniometer,
+        (goniometer, cell): (&Goniometer, Option<usize>),
         around: Around,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Arrival> {
-        let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherDirection));
+        let u = sampler.pair(Dimension::GatherDirection);
+        let DrawnDirection { cell, out, solid_angle } = direction(goniometer, cell, u);
         let u = sampler.pair(Dimension::GatherPosition);
         let through = match &self.aim {
             Some(aim) => aim.sample(u)?.point,
@@ -249,7 +286,7 @@ impl<'s> Arrivals<'s> {
         };
         // Beyond the ball, whichever point of it the ray passes through.
         let ray = Ray::new(through + 2.0 * around.radius * out, -out);
-        let extent = self.across(&ray, around) * 4.0 * PI;
+        let extent = self.across(&ray, around) * solid_angle;
         extent
             .is_finite()
             .then(|| self.arrival((ray, out), None, Begins::OnSensor, extent, smallvec![cell]))
@@ -258,11 +295,12 @@ impl<'s> Arrivals<'s> {
     /// A start on a goniometric sphere of finite radius, inward.
     fn on_sphere(
         &self,
-        goniometer: &Goniometer,
+        (goniometer, cell): (&Goniometer, Option<usize>),
         radius: f64,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Arrival> {
-        let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherPosition));
+        let u = sampler.pair(Dimension::GatherPosition);
+        let DrawnDirection { cell, out, solid_angle } = direction(goniometer, cell, u);
         let start = AreaPoint {
             point: goniometer.frame.origin + radius * out,
             normal: -out,
@@ -280,7 +318,7 @@ impl<'s> Arrivals<'s> {
                 Drawn { dir, projected: PI, views: SmallVec::new() }
             }
         };
-        let extent = 4.0 * PI * radius * radius * projected;
+        let extent = solid_angle * radius * radius * projected;
         let ray = Ray::new(start.point, dir);
         Some(self.arrival((ray, out), None, Begins::OnSensor, extent, smallvec![cell]))
     }
@@ -326,14 +364,14 @@ fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn>
     projected.is_finite().then(|| Drawn { dir: ray.dir(), projected, views: SmallVec::new() })
 }
 
-/// A direction in the acceptance cone of one of the views, shared by all cones that contain it.
+/// A direction in the acceptance cone of a view, or of any, shared by all cones that contain it.
 fn view_direction(
-    views: &Views,
+    (views, view): (&Views, Option<usize>),
     counts: CountedLight,
     start: &AreaPoint,
     sampler: &mut Sampler<impl Numbers>,
 ) -> Drawn {
-    let (seen, accepting) = views.draw(sampler);
+    let (seen, accepting) = views.draw(view, sampler);
     let dir = away(seen, counts);
     let projected = views_projected(views, accepting.len(), dir.dot(start.normal));
     Drawn { dir, projected, views: accepting }
@@ -350,12 +388,6 @@ fn away(dir: DVec3, counts: CountedLight) -> DVec3 {
         CountedLight::Incident => dir,
         CountedLight::Leaving => -dir,
     }
-}
-
-/// A direction from the middle of a goniometer, uniform over the sphere, with its cell.
-fn direction(goniometer: &Goniometer, u: [f64; 2]) -> (usize, DVec3) {
-    let dir = uniform_sphere(u);
-    (goniometer.cell(dir), dir)
 }
 
 fn around(scene: &Scene) -> Around {

@@ -4,3 +4,4 @@ pub(crate) mod area;
 pub(crate) mod arrivals;
 pub(crate) mod emit;
 mod spectral;
+pub(crate) mod strata;

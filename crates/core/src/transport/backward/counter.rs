@@ -22,6 +22,8 @@ pub(crate) struct GatherPathCounter<'a, 's> {
     pub(crate) arrival: &'a Arrival,
     /// Etendue of this path per basic radiance, its share of the batch, mm² sr.
     pub(crate) etendue: f64,
+    /// Gather paths of the sensor in the batch.
+    pub(crate) paths: u64,
     pub(crate) id: SensorId,
     /// Mixed: flux of one photon of each source, lm or W.
     pub(crate) photon_fluxes: Option<&'a [f64]>,
@@ -176,7 +178,12 @@ impl GatherPathCounter<'_, '_> {
     }
 
     fn lose(&mut self, throughput: f64, loss: Loss) {
-        self.readings.count_lost(&self.backward.layout, self.id, throughput, loss);
+        self.readings.count_lost(
+            &self.backward.layout,
+            self.id,
+            throughput / self.paths as f64,
+            loss,
+        );
     }
 }
 

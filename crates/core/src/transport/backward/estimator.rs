@@ -7,8 +7,8 @@
 //! sensors, and all count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::{Points, Sampler, stream};
-use crate::scene::{Arrivals, SensorId};
+use crate::rng::{Points, Sampler, Shares, stream};
+use crate::scene::SensorId;
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::backward::paths::{Backward, Weights};
 use crate::transport::connect::vertex::Turns;
@@ -46,16 +46,17 @@ impl<'s> Backward<'s> {
         let mut readings =
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, batch);
-        for (id, arrivals) in &self.sensors {
+        for (sensor, (id, _)) in self.sensors.iter().enumerate() {
             let of_sensor = stream::BACKWARD_POINTS + id.index() as u64;
-            let mut points = Points::of_batch((self.seed, of_sensor, batch), self.paths);
-            for index in batch * self.paths..(batch + 1) * self.paths {
+            let shares = self.shares(sensor);
+            let mut points = Points::of_batch((self.seed, of_sensor, batch), shares.paths);
+            for place in 0..shares.paths {
                 if pace.spend(1).is_break() {
                     return None;
                 }
                 self.trace_path(
-                    (*id, arrivals, &mut points),
-                    index,
+                    (sensor, &mut points),
+                    (place, shares),
                     (task, &mut joints),
                     &mut readings,
                 );
@@ -66,14 +67,23 @@ impl<'s> Backward<'s> {
 
     fn trace_path(
         &self,
-        (id, arrivals, points): (SensorId, &Arrivals<'s>, &mut Points),
-        index: u64,
+        (sensor, points): (usize, &mut Points),
+        (place, shares): (u64, Shares),
         (task, joints): (Task<'_>, &mut Sampler),
         readings: &mut Readings,
     ) {
+        let (id, arrivals) = (self.sensors[sensor].0, &self.sensors[sensor].1);
+        let index = task.batch * shares.paths + place;
         let mut fresh = Sampler::for_path(self.seed, stream::BACKWARD + id.index() as u64, index);
         let mut sampler = points.lead(&mut fresh);
-        let Some(arrival) = arrivals.draw(&mut sampler) else { return };
+        let start = match self.strata.get(sensor) {
+            None => arrivals.draw(&mut sampler),
+            Some(strata) => {
+                let stratum = shares.stratum(place, &mut sampler);
+                arrivals.draw_in((strata, stratum), &mut sampler)
+            }
+        };
+        let Some(arrival) = start else { return };
         let gathering = Gathering {
             scene: self.scene,
             emitters: &self.emitters,
@@ -89,7 +99,8 @@ impl<'s> Backward<'s> {
         let mut counter = GatherPathCounter {
             backward: self,
             arrival: &arrival,
-            etendue: etendue / self.paths as f64,
+            etendue: etendue / shares.paths as f64,
+            paths: shares.paths,
             id,
             photon_fluxes,
             batches: 1.0,
@@ -128,7 +139,7 @@ pub(crate) fn tried_batches(
 /// Tries gather paths that meet the sources; `None` if stopped.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
     trials.by_size(Estimator::Backward, |effort| {
-        let backward = paths_for(trials, effort)?;
+        let backward = paths_for(trials, effort)?.in_cells();
         let traced = |batch| {
             let pace = Pace::new(trials.signal);
             let mut readings =

@@ -2,8 +2,8 @@
 //!
 //! This module traces nothing.
 
-use crate::rng::Points;
-use crate::scene::{Arrivals, Scene, SensorId};
+use crate::rng::{Points, Shares};
+use crate::scene::{Arrivals, Scene, SensorId, Strata};
 use crate::transport::Layout;
 use crate::transport::connect::passage::RecordPlaces;
 use crate::transport::connect::sensors::SensorTargets;
@@ -26,9 +26,11 @@ pub(crate) struct Backward<'s> {
     pub(crate) joined_sensors: SensorTargets<'s>,
     /// Sorted by id.
     pub(crate) sensors: Vec<(SensorId, Arrivals<'s>)>,
+    /// The strata of each, where gather paths start in every cell equally often.
+    pub(crate) strata: Vec<Strata<'s>>,
     pub(crate) seed: u64,
     pub(crate) bounce_limit: u32,
-    /// Gather paths per batch of each sensor.
+    /// Gather paths per batch of each sensor, before they are divided evenly among its cells.
     pub(crate) paths: u64,
     pub(crate) weights: Weights,
     /// How all techniques that find a path divide its light.
@@ -76,6 +78,7 @@ impl<'s> Backward<'s> {
             joined_sources: SourceTargets::new(scene),
             joined_sensors: SensorTargets::new(scene, sensors.iter().map(|(id, _)| *id)),
             sensors,
+            strata: Vec::new(),
             seed,
             bounce_limit,
             paths: PILOT_PATHS,
@@ -95,6 +98,12 @@ impl<'s> Backward<'s> {
         self.with_paths(paths)
     }
 
+    /// The same from every cell of a sensor equally often. Photons that share light with gather paths do not know this.
+    pub(crate) fn in_cells(self) -> Self {
+        let strata = self.sensors.iter().map(|(_, arrivals)| arrivals.strata()).collect();
+        Self { strata, ..self }
+    }
+
     /// The same with other weights.
     pub(crate) fn with_weights(self, weights: Weights) -> Self {
         Self { weights, ..self }
@@ -107,7 +116,12 @@ impl<'s> Backward<'s> {
 
     /// Gather paths of all sensors in a batch.
     pub(crate) fn batch_paths(&self) -> u64 {
-        self.paths * self.sensors.len() as u64
+        (0..self.sensors.len()).map(|sensor| self.shares(sensor).paths).sum()
+    }
+
+    /// The gather paths of a batch from a sensor, by its place among the sensors.
+    pub(crate) fn shares(&self, sensor: usize) -> Shares {
+        Shares::of(self.strata.get(sensor).map_or(1, Strata::count) as u64, self.paths)
     }
 
     /// The etendue of a gather path joined to a source at a turn over that of one that meets its

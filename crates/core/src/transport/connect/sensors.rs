@@ -113,7 +113,7 @@ impl<'s> SensorTargets<'s> {
             for &(id, LeavingTarget { sensor, views }) in targets {
                 let Some(cell) = sensor.grid.cell(scene.chart(hit.prim, point)) else { continue };
                 let normal = scene.normal(hit.prim, point);
-                let (dir, accepting) = views.draw(sampler);
+                let (dir, accepting) = views.draw(None, sampler);
                 if !sensor.sides.include(sensor.counts, Toward::of(dir, normal)) {
                     continue;
                 }

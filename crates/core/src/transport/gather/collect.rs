@@ -116,7 +116,8 @@ impl Collecting<'_, '_> {
 
     fn lose(&mut self, throughput: f64, loss: Loss) {
         for readings in &mut *self.orders {
-            readings.count_lost(&self.gather.layout, self.id, throughput, loss);
+            let share = throughput / readings.batch_paths as f64;
+            readings.count_lost(&self.gather.layout, self.id, share, loss);
         }
     }
 

@@ -141,6 +141,7 @@ impl<'s> Gather<'s> {
                 backward,
                 arrival,
                 etendue,
+                paths: pass.gather_paths,
                 id,
                 photon_fluxes: Some(task.photon_fluxes),
                 batches,

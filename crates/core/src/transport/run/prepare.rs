@@ -87,12 +87,15 @@ impl<'s> Run<'s> {
         let (mut prepared, mut batches_asked) = (Vec::new(), plan.stop.batches);
         if let PhotonWork::Shared(share) = work {
             let others = (1.0 - share) / share * by_photons;
-            let usual = backward(scene, plan, &followed, others, &early)?;
+            let (usual, of_path) = backward(scene, plan, &followed, others, &early)?;
             let paths =
                 |all: &[Prepared<'_>]| all.iter().map(|own| own.batch_paths(0)).sum::<u64>();
             let growth = match by_pass {
                 Some(_) => 1,
-                None => sizes.growth(photons + paths(&usual), others + by_photons),
+                None => {
+                    let gathered = paths(&usual);
+                    sizes.growth(photons + gathered, gathered as f64 * of_path + by_photons)
+                }
             };
             photons *= growth;
             prepared = usual.into_iter().map(|own| own.resized([growth, 1])).collect();
@@ -127,26 +130,28 @@ fn sensors_of(estimators: &[Estimator], wanted: Estimator) -> Vec<SensorId> {
     all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
 }
 
-/// Gather paths from sensors that are estimated backward, and mixed, with this much work in a
-/// batch; `None` if the signal stopped it.
+/// Gather paths from sensors that are estimated backward, and mixed, with about this much work in a
+/// batch, and the work of each, ns; `None` if the signal stopped it.
 fn backward<'s>(
     scene: &'s Scene,
     plan: &RunPlan,
     followed: &[Vec<SensorId>; 2],
     work: f64,
     signal: &StopSignal,
-) -> Option<Vec<Prepared<'s>>> {
+) -> Option<(Vec<Prepared<'s>>, f64)> {
     let all = followed.concat();
     if all.is_empty() {
-        return Some(Vec::new());
+        return Some((Vec::new(), 0.0));
     }
     let new = |sensors: &[SensorId]| Backward::new(scene, sensors, plan.seed, plan.bounce_limit);
-    let paths = (work / new(&all).work_of_path(signal)? / all.len() as f64) as u64;
+    let of_path = new(&all).work_of_path(signal)?;
+    let paths = (work / of_path / all.len() as f64) as u64;
     let [alone, mixed] = followed;
-    let alone = (!alone.is_empty()).then(|| Prepared::Backward(new(alone).with_paths(paths)));
+    let alone =
+        (!alone.is_empty()).then(|| Prepared::Backward(new(alone).in_cells().with_paths(paths)));
     let mixed = (!mixed.is_empty())
         .then(|| Prepared::Mix(new(mixed).with_paths(paths).with_weights(Weights::Shared)));
-    Some(alone.into_iter().chain(mixed).collect())
+    Some((alone.into_iter().chain(mixed).collect(), of_path))
 }
 
 /// Gather paths from sensors that are gathered alone, and merged, with their settings; `None` if

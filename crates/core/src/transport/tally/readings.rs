@@ -200,15 +200,9 @@ impl Readings {
         reading.add(&mut self.groups[0].sums, layout, id, light);
     }
 
-    /// Counts a gather path of this throughput that was lost, as a share of all that were drawn.
-    pub(crate) fn count_lost(
-        &mut self,
-        layout: &Layout,
-        id: SensorId,
-        throughput: f64,
-        loss: Loss,
-    ) {
-        self.groups[0].sums[layout.lost_paths(id, loss)] += throughput / self.batch_paths as f64;
+    /// Counts a gather path that was lost: its throughput over the number of all that were drawn from the sensor.
+    pub(crate) fn count_lost(&mut self, layout: &Layout, id: SensorId, share: f64, loss: Loss) {
+        self.groups[0].sums[layout.lost_paths(id, loss)] += share;
     }
 
     /// Groups of batches in which any of some scalars is not zero.

@@ -110,7 +110,7 @@ impl Region {
     }
 
     #[inline(always)]
-    pub(super) fn contains(&self, p: DVec2) -> bool {
+    pub(in crate::scene) fn contains(&self, p: DVec2) -> bool {
         match self {
             Self::Annulus { inner, outer } => {
                 let r2 = p.length_squared();
@@ -142,7 +142,7 @@ impl Region {
         }
     }
 
-    pub(super) fn bounds(&self) -> ChartRect {
+    pub(in crate::scene) fn bounds(&self) -> ChartRect {
         let half = match self {
             Self::Annulus { outer, .. } => DVec2::splat(*outer),
             Self::Sector { inner, outer, wedge } => return sector_bounds(*inner, *outer, wedge),
@@ -201,7 +201,7 @@ impl Region {
         }
     }
 
-    pub(super) fn area_in(&self, rect: ChartRect) -> f64 {
+    pub(in crate::scene) fn area_in(&self, rect: ChartRect) -> f64 {
         let rect = rect.intersection(&self.bounds());
         if rect.is_empty() {
             return 0.0;

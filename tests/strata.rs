@@ -1,0 +1,164 @@
+//! Gather paths start in every cell equally often: errors of cells and of sums stay honest.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod traced;
+
+use lumiduct_core::measure::{MapAxes, Measures};
+use lumiduct_core::plan::Request;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::{Arrivals, SensorId, SensorKind};
+use lumiduct_input::Settings;
+use std::f64::consts::PI;
+
+/// A short mirror tube with sensors of all kinds whose cells are strata.
+const TUBE: &str = r#"
+[finishes.mirror]
+specular = { reflectance = 0.9 }
+[sheets.tube.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 20 }]
+finish = "mirror"
+[sources.lamp.disk]
+radius_mm = 4
+at = { position_mm = [0.5, 0, 0] }
+flux_lm = 10
+[sensors]
+exit = { plane = { cells = [7, 7] }, on = "tube.exit", counts = "leaving" }
+rings = { plane = { rings = 3, sectors = 4 }, on = "tube.exit", counts = "leaving" }
+wall = { plane = { cells = [3, 2] }, on = "tube.wall", counts = "incident", side = "back" }
+views = { luminance = { cells = [4, 4], acceptance_half_angle_deg = 20, directions = [{ theta_deg = 0, phi_deg = 0 }, { theta_deg = 30, phi_deg = 0 }] }, on = "tube.exit", counts = "leaving" }
+far = { goniometer = { c_step_deg = 90, gamma_step_deg = 15 }, at = { face = "tube.exit" } }
+near = { goniometer = { c_step_deg = 90, gamma_step_deg = 15, radius_mm = 60 }, at = { face = "tube.exit" } }
+"#;
+
+fn measures(text: &str, estimator: Request, (seed, paths): (u64, u64)) -> Measures {
+    let settings = Settings {
+        paths: Some(paths),
+        estimator: Some(estimator),
+        seed: Some(seed),
+        ..Settings::default()
+    };
+    traced::measures(&traced::load(text, &settings))
+}
+
+/// Values of all cells that are lit, and of the fluxes, with their errors.
+fn estimates(found: &Measures) -> Vec<(f64, f64)> {
+    let maps = found.maps.iter().flat_map(|map| map.values.iter().zip(&map.std_errors));
+    let tables = found.intensities.iter().flat_map(|own| own.values.iter().zip(&own.std_errors));
+    let cells = maps.chain(tables).map(|(value, error)| (*value, *error));
+    let fluxes = found.values.iter().filter(|(name, _)| name.ends_with(".flux"));
+    cells.chain(fluxes.map(|(_, own)| (own.value, own.std_error))).collect()
+}
+
+/// Root mean square of the deviations from the mean over seeds in standard errors, for each estimate.
+fn spreads(text: &str, estimator: Request, (seeds, paths): (u64, u64)) -> Vec<f64> {
+    let runs: Vec<Vec<(f64, f64)>> =
+        (0..seeds).map(|seed| estimates(&measures(text, estimator, (seed, paths)))).collect();
+    let count = runs.len() as f64;
+    let of = |place: usize| {
+        let all = runs.iter().map(|run| run[place]);
+        let mean = all.clone().map(|(value, _)| value).sum::<f64>() / count;
+        let squares = all.map(|(value, error)| ((value - mean) / error).powi(2)).sum::<f64>();
+        (squares / (count - 1.0)).sqrt()
+    };
+    let is_lit = |place: &usize| runs.iter().all(|run| run[*place].1 > 0.0);
+    (0..runs[0].len()).filter(is_lit).map(of).collect()
+}
+
+fn root_mean_square(all: &[f64]) -> f64 {
+    (all.iter().map(|one| one * one).sum::<f64>() / all.len() as f64).sqrt()
+}
+
+#[test]
+fn errors_of_cells_and_of_fluxes_are_those_found_over_seeds() {
+    for (estimator, paths) in [(Request::Backward, 50_000), (Request::Backward, 10_000)] {
+        let spreads = spreads(TUBE, estimator, (60, paths));
+        assert!(spreads.len() > 100, "{}", spreads.len());
+        let all = root_mean_square(&spreads);
+        assert!((0.9..1.1).contains(&all), "{estimator:?} {paths}: {all}");
+    }
+}
+
+#[test]
+fn cells_add_up_to_the_flux() {
+    let found = measures(TUBE, Request::Backward, (1, 100_000));
+    for map in found.maps.iter().filter(|map| map.sensor != "views") {
+        let (rows, columns) = map.values.dim();
+        let area = |row: usize, column: usize| match &map.axes {
+            MapAxes::Cartesian { u_mm, v_mm } => {
+                (u_mm[column + 1] - u_mm[column]) * (v_mm[row + 1] - v_mm[row])
+            }
+            MapAxes::Polar { radius_mm, sector_deg } => {
+                let turn = (sector_deg[column + 1] - sector_deg[column]).to_radians();
+                0.5 * turn * (radius_mm[row + 1].powi(2) - radius_mm[row].powi(2))
+            }
+            MapAxes::Angular { .. } => panic!("no image"),
+        };
+        let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+        let fluxes = places
+            .filter(|place| map.on_sensor[*place] > 0.0)
+            .map(|place| map.values[place] * area(place.0, place.1) * map.on_sensor[place]);
+        let sum = 1e-6 * fluxes.sum::<f64>();
+        let flux = found.values[&format!("{}.flux", map.sensor)].value;
+        assert!((sum / flux - 1.0).abs() < 1e-9, "{}: {sum}, {flux}", map.sensor);
+    }
+}
+
+#[test]
+fn cells_have_the_light_that_photons_find_there() {
+    let [photons, paths] = [(Request::Forward, 1_000_000), (Request::Backward, 250_000)]
+        .map(|(estimator, paths)| estimates(&measures(TUBE, estimator, (7, paths))));
+    let both = photons.iter().zip(&paths).filter(|(a, b)| a.1 > 0.0 && b.1 > 0.0);
+    let sigmas: Vec<f64> = both.map(|(a, b)| (a.0 - b.0) / a.1.hypot(b.1)).collect();
+    assert!(sigmas.len() > 100, "{}", sigmas.len());
+    let spread = root_mean_square(&sigmas);
+    assert!((0.8..1.2).contains(&spread), "{spread}");
+    assert!(sigmas.iter().all(|own| own.abs() < 4.5), "{sigmas:?}");
+}
+
+#[test]
+fn starts_lie_in_their_cells_and_represent_the_whole_of_them() {
+    const DRAWS: u64 = 4096;
+    let job = traced::load(TUBE, &Settings::default());
+    for (id, sensor) in job.scene.sensors.iter().enumerate() {
+        let arrivals = Arrivals::new(&job.scene, SensorId::new(id));
+        let strata = arrivals.strata();
+        let count = strata.count();
+        // Corners of the square around the disk of the exit have no cells.
+        let expected = match sensor.name.as_str() {
+            "exit" => 45,
+            "views" => 2 * 16,
+            _ => sensor.cells(),
+        };
+        assert_eq!(count, expected, "{}", sensor.name);
+        let mut etendues = vec![0.0; sensor.cells()];
+        for stratum in 0..count {
+            let mut cells = Vec::new();
+            for draw in 0..DRAWS {
+                let mut sampler = Sampler::for_path(id as u64, stratum as u64, draw);
+                let Some(start) = arrivals.draw_in((&strata, stratum), &mut sampler) else {
+                    continue;
+                };
+                for cell in &start.cells {
+                    etendues[*cell] += start.extent / (DRAWS * count as u64) as f64;
+                }
+                cells.extend(start.cells);
+            }
+            cells.sort_unstable();
+            cells.dedup();
+            // Acceptance cones of two views overlap.
+            let most = if sensor.name == "views" { 2 } else { 1 };
+            assert!((1..=most).contains(&cells.len()), "{} {stratum}: {cells:?}", sensor.name);
+        }
+        let SensorKind::Surface(surface) = &sensor.kind else { continue };
+        if sensor.name == "views" {
+            continue;
+        }
+        for (cell, area) in surface.areas.iter().enumerate() {
+            let expected = PI * area;
+            let error = (etendues[cell] - expected).abs();
+            assert!(error < 1e-9 * expected.max(1.0), "{} {cell}: {expected}", sensor.name);
+        }
+    }
+}

@@ -32,6 +32,12 @@ pub(crate) fn utf8(bytes: &[u8]) -> Result<&str, usize> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
+/// The first of some columns that a table names twice, whatever the case of its letters.
+pub(crate) fn repeated<'a>(names: &[&str], columns: &[&'a str]) -> Option<&'a str> {
+    let count = |column: &str| names.iter().filter(|own| own.eq_ignore_ascii_case(column)).count();
+    columns.iter().copied().find(|column| count(column) > 1)
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;

@@ -79,8 +79,10 @@ impl SampledScatter {
                 ));
             }
         }
-        if self.azimuth.len() == 1 {
-            remarks.push("it has one azimuth; its values are used at every azimuth".to_owned());
+        if let [angle] = self.azimuth[..] {
+            remarks.push(format!(
+                "phi_s is given at {angle} deg only; these values are used at all phi_s"
+            ));
         } else if is_half {
             remarks.extend(beyond("phi_s", &self.azimuth, last_azimuth));
             remarks.push(
@@ -100,7 +102,7 @@ impl SampledScatter {
     }
 
     /// Whether azimuths are given for one side of the plane of incidence alone.
-    fn is_half(&self) -> bool {
+    pub(super) fn is_half(&self) -> bool {
         self.azimuth[self.azimuth.len() - 1] <= 180.0
     }
 

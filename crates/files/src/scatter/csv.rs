@@ -1,6 +1,8 @@
 //! CSV of an isotropic sample, a row for each pair of directions.
 
+use crate::bytes::repeated;
 use crate::scatter::angles::SampledScatter;
+use crate::scatter::coverage::expect_covered;
 use crate::scatter::data::{BsdfMatrix, ScatterFile, ScatterSide};
 use crate::scatter::error::{Violation, value};
 use std::collections::BTreeMap;
@@ -41,6 +43,10 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
     let mut lines = rows(text);
     let (head_line, head) = lines.next().unwrap_or((1, ""));
     let names: Vec<&str> = head.split(',').map(str::trim).collect();
+    if let Some(name) = repeated(&names, &[ANGLES[0], ANGLES[1], ANGLES[2], BRDF, BTDF]) {
+        let problem = format!("the column `{name}` is there twice; remove one of them");
+        return Err(Violation::new(head_line, problem));
+    }
     let place = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
     let missing = |name: &str| {
         let problem = format!(
@@ -155,8 +161,9 @@ fn averaged(
     }
     let [incident, polar, azimuth] =
         keys.map(|keys| keys.into_iter().map(|key| f64::from(key) / UNITS_PER_DEG).collect());
-    let averaged = SampledScatter { incident, polar, azimuth, values, line: first_line }.matrix();
-    averaged.ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
+    let sampled = SampledScatter { incident, polar, azimuth, values, line: first_line };
+    expect_covered(&sampled).map_err(|problem| Violation::new(head_line, problem))?;
+    sampled.matrix().ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
 }
 
 /// Whether all angles are within the range of radians, and some are above 0.

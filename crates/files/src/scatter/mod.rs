@@ -10,7 +10,7 @@
 //! use lumiduct_files::scatter::{ScatterFormat, parse};
 //! use std::f64::consts::PI;
 //!
-//! let csv = "theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n0,0,0,0.2\n0,90,0,0.2\n";
+//! let csv = "theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n0,0,0,0.2\n";
 //! let sheet = parse(csv.as_bytes(), ScatterFormat::Csv)?;
 //! let matrix = sheet.front.transmission.ok_or("no transmission")?;
 //! let [_, leaving] = matrix.pairs.counts();
@@ -25,6 +25,7 @@
 
 mod angles;
 mod basis;
+mod coverage;
 mod csv;
 mod data;
 mod error;

@@ -8,6 +8,7 @@ use proptest::array::uniform2;
 use proptest::collection::{btree_set, vec};
 use proptest::prelude::*;
 use proptest::sample::select;
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
@@ -20,15 +21,23 @@ struct ScatterTable {
     values: [Vec<f64>; 2],
 }
 
-/// Angles are so far apart that no patch at a polar angle of 30 deg or more reaches past the next angle.
+/// Angles are so far apart that no patch at a polar angle of 30 deg or more reaches past the next angle, and near enough to be a table.
 fn scatter_table() -> impl Strategy<Value = ScatterTable> {
-    let angles = |step: u32, last: u32, least: usize| {
-        let steps = btree_set(0..=last / step, least..6);
-        steps
-            .prop_map(move |all| all.into_iter().map(|n| f64::from(n * step)).collect::<Vec<f64>>())
+    let angles = |all: BTreeSet<u32>| all.into_iter().map(f64::from).collect::<Vec<f64>>();
+    let polar = || {
+        let parts = (btree_set(0..=18u32, 0..4), 0..=4u32, 14..=18u32);
+        parts.prop_map(move |(mut steps, first, last)| {
+            steps.extend([first, 9, last]);
+            angles(steps.into_iter().map(|step| 5 * step).collect())
+        })
     };
-    let values = uniform2(vec(0.01..2.0f64, 125));
-    let parts = (angles(5, 90, 1), angles(5, 90, 2), angles(30, 330, 1), values);
+    let azimuth = (btree_set(0..12u32, 0..4), select(vec![180u32, 330]));
+    let azimuth = azimuth.prop_map(move |(steps, last)| {
+        let all = steps.into_iter().map(|step| 30 * step).chain((0..=last).step_by(90));
+        angles(all.filter(|angle| *angle <= last).collect())
+    });
+    let values = uniform2(vec(0.01..2.0f64, 6 * 6 * 7));
+    let parts = (polar(), polar(), azimuth, values);
     parts.prop_map(|(incident, polar, azimuth, values)| ScatterTable {
         incident,
         polar,

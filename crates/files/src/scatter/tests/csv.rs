@@ -31,14 +31,16 @@ fn angles_of_a_csv_are_interpolated_and_turn_with_the_light() {
 
 #[test]
 fn patches_keep_the_light_of_narrow_peaks() {
-    // A cone about the mirrored direction of 45 deg, of 1.5 deg in polar angle and 0.3 deg in azimuth, linear between angles.
+    // A cone about the direction at 45 deg, of 1.5 deg in polar angle and 0.3 deg in azimuth, linear between angles.
     let polars = [0.0, 44.25, 45.0, 45.75, 90.0];
-    let azimuths = [0.0, 0.15, 180.0];
+    let azimuths = [0.0, 0.15, 90.0, 180.0];
     let mut text = "theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n".to_owned();
-    for polar in polars {
-        for phi in azimuths {
-            let peak = if polar == 45.0 && phi == 0.0 { 5e3 } else { 0.0 };
-            _ = writeln!(text, "45,{polar},{phi},{peak}");
+    for incident in [0.0, 45.0, 90.0] {
+        for polar in polars {
+            for phi in azimuths {
+                let peak = if polar == 45.0 && phi == 0.0 { 5e3 } else { 0.0 };
+                _ = writeln!(text, "{incident},{polar},{phi},{peak}");
+            }
         }
     }
     let file = good(&text, ScatterFormat::Csv);
@@ -65,8 +67,8 @@ fn large_tables_take_little_time_and_space() {
     for (text, most) in [
         (spread(50_000, |at| format!("{at:.5},0,0,.1\n")), 1 << 20),
         (spread(50_000, |at| format!("0,{at:.5},0,.1\n")), 1 << 20),
-        (spread(50_000, |at| format!("0,45,{at:.5},.1\n")), 1 << 20),
-        (spread(25_000, |at| format!("0,{at:.5},0,.1\n0,{at:.5},9,.1\n")), 1 << 20),
+        (spread(50_000, |at| format!("0,45,{:.5},.1\n", 4.0 * at)), 1 << 20),
+        (spread(25_000, |at| format!("0,{at:.5},0,.1\n0,{at:.5},180,.1\n")), 1 << 20),
     ] {
         let file = good(&text, ScatterFormat::Csv);
         let matrix = file.front.reflection.unwrap();
@@ -109,7 +111,102 @@ fn a_csv_needs_every_combination_but_azimuths_of_the_zenith() {
     assert_eq!(good(&old, ScatterFormat::Csv).front, good(&all, ScatterFormat::Csv).front);
     // Azimuths beyond 2π show that a narrow scan is in degrees.
     let narrow = format!("{head}0,0,0,0.1\n0,1.5,0,0.1\n0,0,180,0.1\n0,1.5,180,0.1\n");
-    good(&narrow, ScatterFormat::Csv);
+    refused(&narrow, ScatterFormat::Csv, &["line 1: theta_s_deg ends at 1.5"]);
+    let twice = all.replacen("theta_s_deg", "theta_s_deg, Theta_s_deg", 1);
+    refused(&twice, ScatterFormat::Csv, &["line 2: the column `theta_s_deg` is there twice"]);
+}
+
+/// A table of values over these angles that change with each of them.
+fn changing(incident: &[f64], polar: &[f64], azimuth: &[f64]) -> String {
+    let mut text = "# a sample\ntheta_i_deg,theta_s_deg,phi_s_deg,brdf_per_sr\n".to_owned();
+    for i in incident {
+        for s in polar {
+            for phi in azimuth {
+                _ = writeln!(text, "{i},{s},{phi},{}", 1e-4 * (1.0 + i + s + phi));
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn angles_that_are_missing_are_named() {
+    let (polar, azimuth) = (&[0.0, 45.0, 90.0][..], &[0.0, 90.0, 180.0][..]);
+    for (incident, part) in [
+        (&[0.0][..], "theta_i_deg is 0 in all rows, but the values change"),
+        (
+            &[30.0, 60.0, 80.0],
+            "theta_i_deg begins at 30, so angles are missing below it; add rows from 0",
+        ),
+        (
+            &[0.0, 30.0, 60.0],
+            "theta_i_deg ends at 60, so angles are missing beyond it; add rows up to 90",
+        ),
+        (&[0.0, 10.0, 70.0, 80.0], "theta_i_deg has no rows between 10 and 70, 60 deg apart"),
+    ] {
+        refused(&changing(incident, polar, azimuth), ScatterFormat::Csv, &["line 2", part]);
+    }
+    for (polar, part) in [
+        (&[45.0][..], "theta_s_deg is 45 in all rows"),
+        (&[25.0, 60.0, 90.0], "theta_s_deg begins at 25"),
+        (&[0.0, 40.0, 65.0], "theta_s_deg ends at 65"),
+        (&[0.0, 30.0, 80.0], "theta_s_deg has no rows between 30 and 80"),
+    ] {
+        refused(
+            &changing(&[0.0, 45.0, 90.0], polar, azimuth),
+            ScatterFormat::Csv,
+            &["line 2", part],
+        );
+    }
+    for (azimuth, part) in [
+        (&[0.0][..], "phi_s_deg is 0 in all rows"),
+        (
+            &[0.0, 45.0, 90.0],
+            "phi_s_deg from 0 to 90 covers neither a half circle, 0 to 180, nor a whole one",
+        ),
+        (&[45.0, 90.0, 135.0, 180.0], "phi_s_deg from 45 to 180 covers neither"),
+        (&[0.0, 30.0, 60.0, 200.0], "phi_s_deg from 0 to 200 covers neither"),
+        // In the plane of incidence alone.
+        (&[0.0, 180.0], "phi_s_deg has no rows between 0 and 180"),
+        (&[180.0, 240.0, 300.0, 360.0], "phi_s_deg from 180 to 360 covers neither"),
+    ] {
+        refused(
+            &changing(&[0.0, 45.0, 90.0], polar, azimuth),
+            ScatterFormat::Csv,
+            &["line 2", part],
+        );
+    }
+    // A constant with angles has all of them, too.
+    let short =
+        changing(&[0.0, 30.0], polar, azimuth).lines().take(2).collect::<Vec<_>>().join("\n");
+    refused(
+        &(short + "\n0,0,0,.1\n60,0,0,.1\n"),
+        ScatterFormat::Csv,
+        &["line 2: theta_i_deg ends at 60"],
+    );
+}
+
+#[test]
+fn a_little_beyond_its_angles_a_table_is_constant_with_a_remark() {
+    let polar = &[20.0, 45.0, 70.0][..];
+    for (azimuth, words) in [
+        (&[20.0, 90.0, 160.0][..], "phi_s of 20 to 160 deg"),
+        (&[0.0, 90.0, 180.0, 270.0], "theta_s of 20 to 70 deg"),
+        (&[0.0, 60.0, 120.0, 180.0, 240.0, 300.0, 360.0], "theta_s of 20 to 70 deg"),
+    ] {
+        let file = good(&changing(polar, polar, azimuth), ScatterFormat::Csv);
+        let remarks = file.remarks.join("; ");
+        for part in ["beyond theta_i of 20 to 70 deg the value at the nearest angle", words] {
+            assert!(remarks.contains(part), "{part}: {remarks}");
+        }
+    }
+    // A constant needs one angle of each kind.
+    let one = "theta_i_deg,theta_s_deg,phi_s_deg,brdf_per_sr\n0,30,0,.1\n";
+    let file = good(one, ScatterFormat::Csv);
+    assert!(file.front.reflection.unwrap().values.iter().all(|value| (value - 0.1).abs() < 1e-12));
+    for name in ["theta_i is given at 0", "theta_s is given at 30", "phi_s is given at 0"] {
+        assert!(file.remarks.iter().any(|own| own.contains(name)), "{name}: {:?}", file.remarks);
+    }
 }
 
 #[test]

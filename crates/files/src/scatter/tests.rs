@@ -96,6 +96,39 @@ fn letters_of_directions_and_comments_do_not_matter() {
 }
 
 #[test]
+fn the_type_of_scattering_data_fits_their_direction() {
+    let file = |direction: &str, kind: &str| {
+        let data = matrix(KLEMS_QUARTER, |_, _| 0.1);
+        let all = xml("Columns", "", &[(direction, "LBNL/Klems Quarter", data)]);
+        all.replacen(
+            "<ScatteringData>",
+            &format!("\n<ScatteringDataType>{kind}</ScatteringDataType><ScatteringData>"),
+            1,
+        )
+    };
+    for (direction, kind) in
+        [("Transmission Back", " btdf "), ("Reflection Back", "BRDF"), ("Reflection Front", "BSDF")]
+    {
+        assert_eq!(good(&file(direction, kind), ScatterFormat::Xml).remarks, [""; 0]);
+    }
+    // Programs of Radiance write this.
+    let other = good(&file("Reflection Back", "BTDF"), ScatterFormat::Xml);
+    assert!(other.remarks[0].contains("of reflection is BTDF"), "{:?}", other.remarks);
+    assert!(other.back.reflection.is_some());
+    for (direction, kind, part) in [
+        (
+            "Transmission Front",
+            "BRDF",
+            "`BRDF`, a reflection, but WavelengthDataDirection is `Transmission Front`",
+        ),
+        ("Transmission Front", "", "ScatteringDataType is ``, expected BTDF or BRDF"),
+        ("Reflection Front", "Reflectance", "`Reflectance`, expected BTDF or BRDF: values in 1/sr"),
+    ] {
+        refused(&file(direction, kind), ScatterFormat::Xml, &["line 7", part]);
+    }
+}
+
+#[test]
 fn klems_bases_have_their_patches() {
     for (name, count) in [("Full", 145), ("Half", 77), ("Quarter", 41)] {
         let basis = format!("LBNL/Klems {name}");

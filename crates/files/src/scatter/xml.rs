@@ -117,6 +117,7 @@ fn add_block(
     if place.is_some() {
         return Err(Violation::new(line, format!("there are two visible blocks of `{direction}`")));
     }
+    file.remarks.extend(data_type_remark(block, direction)?);
     let data = block.children().find(|child| child.has_tag_name("ScatteringData"));
     let data = data.ok_or_else(|| Violation::new(line, "it has no element `ScatteringData`"))?;
     let words = &text_with_lines(data);
@@ -143,6 +144,29 @@ fn add_block(
     };
     *place = Some(matrix);
     Ok(())
+}
+
+/// Refuses values that are no BTDF of transmission and no BRDF of reflection. Programs of Radiance call both BTDF, which is remarked.
+fn data_type_remark(block: Node<'_, '_>, direction: &str) -> Result<Option<String>, Violation> {
+    let Some(node) = block.children().find(|child| child.has_tag_name("ScatteringDataType")) else {
+        return Ok(None);
+    };
+    let word = node.text().unwrap_or_default().trim();
+    let refuse = |problem: String| Err(Violation::new(line_of(node), problem));
+    let is_transmission = direction.to_ascii_lowercase().starts_with("transmission");
+    match (word.to_ascii_uppercase().as_str(), is_transmission) {
+        ("BTDF", true) | ("BRDF", false) | ("BSDF", _) => Ok(None),
+        ("BTDF", false) => Ok(Some(
+            "ScatteringDataType of reflection is BTDF; its values are used as those of a BRDF"
+                .to_owned(),
+        )),
+        ("BRDF", true) => refuse(format!(
+            "ScatteringDataType is `{word}`, a reflection, but WavelengthDataDirection is `{direction}`; correct one of them"
+        )),
+        _ => {
+            refuse(format!("ScatteringDataType is `{word}`, expected BTDF or BRDF: values in 1/sr"))
+        }
+    }
 }
 
 /// The text of an element without its comments, but with their ends of lines.

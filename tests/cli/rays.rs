@@ -69,6 +69,35 @@ fn a_run_writes_rays_that_are_converted_thinned_and_traced_again() {
 }
 
 #[test]
+fn convert_remarks_on_a_header_that_contradicts_its_rays_and_writes_what_can_be_read() {
+    let place = Place::new();
+    let table = |fluxes: &[&str]| -> String {
+        let rows = fluxes.iter().map(|flux| format!("0,0,0,0,0,1,{flux}\n"));
+        "x_mm,y_mm,z_mm,dx,dy,dz,flux_lm\n".to_owned() + &rows.collect::<String>()
+    };
+    fs::write(place.path("a.csv"), table(&["1", "2"])).unwrap();
+    let said = place.good("convert a.csv a.tm25ray");
+    assert!(!said.contains("remark"), "{said}");
+    let mut file = fs::read(place.path("a.tm25ray")).unwrap();
+    file[12..16].copy_from_slice(&4f32.to_le_bytes());
+    fs::write(place.path("b.tm25ray"), &file).unwrap();
+    for arguments in ["convert b.tm25ray", "convert b.tm25ray b.csv --rays 1"] {
+        let said = place.good(arguments);
+        let remark = "remark: its header states 4 lm, 33.33 % from the 3 lm of its rays";
+        assert_eq!(said.matches(remark).count(), 1, "{said}");
+    }
+    fs::write(place.path("bright.csv"), table(&["1e38"; 4])).unwrap();
+    let said = place.bad(2, "convert bright.csv bright.tm25ray");
+    assert!(said.contains("bright.csv: ") && said.contains("line 2: its flux is 1e38"), "{said}");
+    assert!(!place.path("bright.tm25ray").exists());
+    fs::write(place.path("most.csv"), table(&["1e30"; 4])).unwrap();
+    place.good("convert most.csv most.tm25ray");
+    let said = place.good("convert most.tm25ray most.sdf");
+    assert!(said.contains("rays: 4\n") && !said.contains("remark"), "{said}");
+    place.good("convert most.sdf");
+}
+
+#[test]
 fn a_sensor_that_few_photons_reach_writes_fewer_rays_or_none() {
     let place = Place::new();
     let small = LAMP.replace("width_mm = 4, height_mm = 4", "width_mm = 0.05, height_mm = 0.05");

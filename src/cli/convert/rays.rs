@@ -28,7 +28,7 @@ pub(super) fn converted(
         None => None,
     };
     let in_source = |error| wrong(from, error);
-    let (mut info, remarks, rays) = match subset {
+    let (mut info, mut remarks, rays) = match subset {
         Some((count, seed)) => {
             let most = usize::try_from(count).unwrap_or(usize::MAX);
             let RaySample { rays, mut info, remarks } =
@@ -48,6 +48,7 @@ pub(super) fn converted(
         }
     };
     let extent = open().and_then(Extent::of).map_err(in_source)?;
+    remarks.extend(info.remark_on_flux(extent.flux));
     let stated = std::mem::replace(&mut info.flux, extent.flux);
     let mut text = description(&info, stated, &extent);
     for remark in remarks {

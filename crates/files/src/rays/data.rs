@@ -1,9 +1,14 @@
 //! What ray files hold.
 
+use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_base::units::FluxUnit;
 
 /// Largest coordinate, mm.
 const MOST_MM: f32 = 1e7;
+/// Largest flux of a ray, lm or W: that of the brightest scene. Sums of it, too, are finite in single precision.
+pub(crate) const MOST_FLUX: f32 = 1e30;
+/// Relative difference between the flux that a file states and that of its rays that needs no remark, 1.
+const SAME_FLUX: f64 = 0.01;
 /// Largest deviation of a direction's length from 1.
 const UNIT_WITHIN: f32 = 1e-3;
 
@@ -93,6 +98,16 @@ impl RaySetInfo {
     pub fn text(&self, kind: RayText) -> Option<&str> {
         self.texts.iter().find(|(own, _)| *own == kind).map(|(_, text)| text.as_str())
     }
+
+    /// A remark if the flux that the file states is not that of its rays, in the same unit: a sentence without a full stop.
+    pub fn remark_on_flux(&self, of_rays: f64) -> Option<String> {
+        let off = (self.flux / of_rays - 1.0).abs();
+        (self.flux > 0.0 && off > SAME_FLUX).then(|| {
+            let [stated, sum] = [self.flux, of_rays].map(format_value);
+            let (unit, off) = (self.unit.flux(), format_percent(off));
+            format!("its header states {stated} {unit}, {off} from the {sum} {unit} of its rays, which count")
+        })
+    }
 }
 
 impl FileRay {
@@ -107,6 +122,9 @@ impl FileRay {
         }
         if flux < 0.0 {
             return Err(format!("its flux is {flux}; a flux cannot be negative"));
+        }
+        if flux > MOST_FLUX {
+            return Err(format!("its flux is {flux:e}; at most {MOST_FLUX:e} can be used"));
         }
         let [dx64, dy64, dz64] = [dx, dy, dz].map(f64::from);
         let length = (dx64 * dx64 + dy64 * dy64 + dz64 * dz64).sqrt();

@@ -1,13 +1,9 @@
 //! Rays of a file that fit into memory.
 
 use crate::rays::{FileRay, RayFileError, RayReader, RaySetInfo};
-use lumiduct_base::number::{format_percent, format_value};
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::path::Path;
-
-/// Relative difference between the flux that a file states and that of its rays that needs no remark, 1.
-const SAME_FLUX: f64 = 0.01;
 
 /// Rays of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,15 +51,8 @@ pub(crate) fn sampled(
     if sum <= 0.0 {
         return Err(RayFileError::NoLight);
     }
-    let stated = std::mem::replace(&mut info.flux, sum);
-    if stated > 0.0 && (stated / sum - 1.0).abs() > SAME_FLUX {
-        let (unit, off) = (info.unit.flux(), format_percent((stated / sum - 1.0).abs()));
-        remarks.push(format!(
-            "its header states {} {unit}, {off} from the {} {unit} of its rays, which count",
-            format_value(stated),
-            format_value(sum)
-        ));
-    }
+    remarks.extend(info.remark_on_flux(sum));
+    info.flux = sum;
     kept.sort_unstable_by_key(|(index, _)| *index);
     Ok(RaySample { rays: kept.into_iter().map(|(_, ray)| ray).collect(), info, remarks })
 }

@@ -1,5 +1,6 @@
 //! CSV with a ray a line, its columns named in the first line that is not a comment.
 
+use crate::bytes::repeated;
 use crate::rays::lines::RayLines;
 use crate::rays::source::{Opened, RaySource};
 use crate::rays::{FileRay, RayFileError, RayFormat, RaySetInfo, RayText};
@@ -27,6 +28,12 @@ impl RayTable {
         let mut lines = RayLines::new(source, RayFormat::Csv);
         let head = line(&mut lines)?.unwrap_or_default();
         let names: Vec<&str> = head.split(',').map(word).collect();
+        let known = [&COLUMNS[..], &[LUMENS, WATTS]].concat();
+        if let Some(name) = repeated(&names, &known) {
+            return Err(
+                lines.wrong(format!("the column `{name}` is there twice; remove one of them"))
+            );
+        }
         let place = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
         let missing = |what: String| {
             let commas = if names.len() < 7 { "; commas separate columns" } else { "" };
@@ -36,7 +43,12 @@ impl RayTable {
             ))
         };
         let (unit, flux_at) = match (place(LUMENS), place(WATTS)) {
-            (Some(at), _) => (FluxUnit::Lumen, at),
+            (Some(_), Some(_)) => {
+                let problem =
+                    format!("it has both columns `{LUMENS}` and `{WATTS}`; remove one of them");
+                return Err(lines.wrong(problem));
+            }
+            (Some(at), None) => (FluxUnit::Lumen, at),
             (None, Some(at)) => (FluxUnit::Watt, at),
             (None, None) => return Err(missing(format!("`{LUMENS}` or `{WATTS}`"))),
         };

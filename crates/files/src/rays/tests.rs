@@ -171,6 +171,16 @@ fn rays_that_are_none_are_refused_in_every_format() {
         );
         refused(&bytes(RayFormat::Csv, &rays, FluxUnit::Lumen), RayFormat::Csv, &["line 5", part]);
     }
+    // What the writer refuses, too.
+    let large = bytes(RayFormat::Tm25, &good, FluxUnit::Lumen);
+    let flux = |value: f32| {
+        let mut file = large.clone();
+        let last = file.len() - 4;
+        file[last..].copy_from_slice(&value.to_le_bytes());
+        file
+    };
+    assert_eq!(read(&flux(1e30), RayFormat::Tm25).unwrap()[2].flux, 1e30);
+    refused(&flux(1e38), RayFormat::Tm25, &["ray 3 at byte 36344", "flux is 1e38; at most 1e30"]);
     // Nearly a unit vector: it is made one.
     let mut rays = good;
     rays[1].direction = [0.0, 0.0, 0.9995];
@@ -208,7 +218,10 @@ fn source_files_of_opticstudio_have_units_and_a_text_form() {
     refuse("0 4\n", &["no rays"]);
     refuse("lamp", &["line 1", "begins with 1010"]);
     refuse(&format!("1 4\n{}", "1".repeat(1 << 17)), &["line 2", "more than 65536 bytes"]);
-    refuse(&"1 2 3 0 0 1 1\r".repeat(1 << 14), &["line 1", "end in CR alone"]);
+    // Lines may end in CR.
+    let old = "2 4\r1 2 3 0 0 1 1\r\r1 2 3 0 0 1 2\r";
+    assert_eq!(read(old.as_bytes(), RayFormat::Zemax).unwrap()[1].flux, 2.0);
+    refuse(&old.replace("1 2\r", "1 x\r"), &["line 4", "`x` is not a number"]);
 }
 
 #[test]
@@ -227,6 +240,28 @@ fn csv_may_have_comments_any_order_and_any_line_ends() {
     refuse(&format!("{head}0,0,0,0,0,1\n"), &["line 2", "6 columns instead of 7"]);
     refuse(&format!("{head}0,0,0,0,0,1,1\n0,0,0,0,0,1,-\n"), &["line 3", "`-` is not a number"]);
     refuse(&format!("{head}{}", "1".repeat(1 << 18)), &["line 2", "more than 65536 bytes"]);
+    refuse(
+        &head.replace("flux_lm", "flux_lm,flux_w"),
+        &["line 1", "both columns `flux_lm` and `flux_w`"],
+    );
+    refuse(
+        &head.replace("flux_lm", "flux_lm,X_mm"),
+        &["line 1", "the column `x_mm` is there twice"],
+    );
+    refuse(
+        &head.replace("flux_lm", "flux_w,flux_w"),
+        &["line 1", "the column `flux_w` is there twice"],
+    );
+    // More lines than a buffer has, with each end.
+    let rays = random_rays(2000);
+    let many = String::from_utf8(bytes(RayFormat::Csv, &rays, FluxUnit::Lumen)).unwrap();
+    for end in ["\r\n", "\r", "\n"] {
+        assert_eq!(
+            read(many.replace('\n', end).as_bytes(), RayFormat::Csv).unwrap(),
+            rays,
+            "{end:?}"
+        );
+    }
     let quoted =
         "\"x_mm\",\"y_mm\",\"z_mm\",\"dx\",\"dy\",\"dz\",\"flux_lm\"\n\"1\",2,3,0,0,1,2.5\n";
     assert_eq!(read(quoted.as_bytes(), RayFormat::Csv).unwrap(), [ray]);
@@ -249,6 +284,7 @@ fn errors_of_csv_count_comments_and_blank_lines() {
     ] {
         refused(text.as_bytes(), RayFormat::Csv, &parts);
         refused(text.replace('\n', "\r\n").as_bytes(), RayFormat::Csv, &parts);
+        refused(text.replace('\n', "\r").as_bytes(), RayFormat::Csv, &parts);
     }
     // Comments may be in any encoding.
     let text = [head.as_bytes(), good.as_bytes(), b"# 5\xb0\n0,0,0,0,0,1,\xff\n"].concat();
@@ -321,6 +357,20 @@ fn what_cannot_be_written_is_refused() {
     info.count = 5_000_000_000;
     let error = write(&mut out, RayFormat::Zemax, &info, []).unwrap_err();
     assert!(error.to_string().contains("at most 4000000000"), "{error}");
+    for format in FORMATS {
+        let bright = [FileRay { flux: 1e38, ..rays[0] }; 4];
+        let stated = RaySetInfo { count: 4, flux: 4e38, ..info.clone() };
+        let error = write(&mut out, format, &stated, bright.map(Ok)).unwrap_err().to_string();
+        assert!(error.contains("a flux of 4e38 lm"), "{error}");
+        let stated = RaySetInfo { count: 1, flux: 1e38, ..info.clone() };
+        let error = write(&mut out, format, &stated, [Ok(bright[0])]).unwrap_err().to_string();
+        assert!(error.contains("a ray of 1e38 lm; at most 1e30 lm"), "{error}");
+        let most = [FileRay { flux: 1e30, ..rays[0] }; 4];
+        let stated = RaySetInfo { count: 4, flux: 4e30, ..info.clone() };
+        let mut file = Vec::new();
+        write(&mut file, format, &stated, most.map(Ok)).unwrap();
+        assert_eq!(read(&file, format).unwrap(), most, "{format}");
+    }
     info.count = 0;
     info.texts = vec![(RayText::Name, "é".repeat(1001))];
     let remarks = write(&mut out, RayFormat::Tm25, &info, []).unwrap();

@@ -1,5 +1,6 @@
 //! Streaming writing of ray files of any format.
 
+use crate::rays::data::MOST_FLUX;
 use crate::rays::{FileRay, RayFileError, RayFormat, RaySetInfo, table, tm25, zemax};
 use std::io::{BufWriter, Write};
 
@@ -8,7 +9,7 @@ use std::io::{BufWriter, Write};
 /// # Errors
 ///
 /// Errors of the rays; [`RayFileError::Unreadable`] if the file cannot be written; [`RayFileError::NotWritten`] if there are not
-/// `info.count` rays, or too many for the format.
+/// `info.count` rays, or too many for the format, or if a ray or all of them have too much flux for its readers.
 pub fn write(
     out: &mut dyn Write,
     format: RayFormat,
@@ -18,6 +19,9 @@ pub fn write(
     let refused = |problem: String| RayFileError::NotWritten { format, problem };
     if format == RayFormat::Zemax && info.count > zemax::MOST_RAYS {
         return Err(refused(format!("{} rays; at most {}", info.count, zemax::MOST_RAYS)));
+    }
+    if info.flux > f64::from(f32::MAX) {
+        return Err(refused(format!("a flux of {:e} {}", info.flux, info.unit.flux())));
     }
     let mut out = BufWriter::new(out);
     let remarks = match format {
@@ -30,7 +34,12 @@ pub fn write(
     };
     let mut count = 0;
     for ray in rays {
-        let numbers = ray?.numbers();
+        let ray = ray?;
+        if ray.flux > MOST_FLUX {
+            let (flux, unit) = (ray.flux, info.unit.flux());
+            return Err(refused(format!("a ray of {flux:e} {unit}; at most {MOST_FLUX:e} {unit}")));
+        }
+        let numbers = ray.numbers();
         match format {
             RayFormat::Tm25 | RayFormat::Zemax => {
                 for number in numbers {

@@ -23,6 +23,8 @@ const MOST_SETS: usize = 20;
 const ROUNDING: f64 = 1e-3;
 /// Relative difference of light output ratios that interpolation explains, 1.
 const SAME_RATIO: f64 = 0.05;
+/// Largest share that rounding explains, %.
+const MOST_PERCENT: f64 = 100.5;
 /// Direct ratios for ten room indices.
 const DIRECT_RATIOS: usize = 10;
 
@@ -52,7 +54,11 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         fields.optional(&format!("the {what} of the luminaire"))?;
     }
     let opening = opening(&mut fields, &mut remarks)?;
-    fields.optional("the downward flux fraction")?;
+    let downward = fields.optional("the downward flux fraction")?;
+    if !(0.0..=MOST_PERCENT).contains(&downward) {
+        return Err(fields
+            .wrong(format!("the downward flux fraction is {downward} %, expected 0 to 100 %")));
+    }
     let stated_ratio = fields.optional("the light output ratio")? / 100.0;
     let conversion = fields.positive("the conversion factor", MOST_FACTOR)?;
     if fields.optional("the tilt during measurement")? != 0.0 {

@@ -1,6 +1,7 @@
 //! Files that are read and written, and files that are not.
 
 mod goniometer_types;
+mod ldt;
 mod tm33;
 mod tm33_schema;
 

@@ -132,6 +132,17 @@ fn what_does_not_fit_is_refused_with_a_hint() {
     for (text, words) in [
         (&b"c_from_deg,c_to_deg\n0,1\n"[..], "m.csv:1: not a map"),
         (b"sector_deg,radius_mm,e_lx\n0,1,2\n", "m.csv:1: a map of rings"),
+        (
+            b"x_mm,y_mm,luminance_cd_m2\n0,0,1\n1,0,1\n0,1,1\n",
+            "m.csv:1: the values are in `cd/m\u{b2}`, but exit",
+        ),
+        (
+            b"c_deg,gamma_deg,i_cd\n0,0,1\n0,181,1\n",
+            "m.csv:3: \u{3b3} is 181 deg, expected 0 to 180 deg",
+        ),
+        (b"x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n2,2,3\n", "m.csv:2: the 3 points"),
+        (b"1 2 3\n", "m.csv:1: the values from here on make 3 columns and 1 row"),
+        (b"1\n2\n", "m.csv:1: the values from here on make 1 column and 2 rows"),
         (b"x_mm,y_mm,e_lx\n0,0,-5\n", "m.csv:2: the value `-5` is below 0; set readings"),
         (b"x_mm,y_mm,e_lx\n0,0,\xb5\n", "m.csv:2: not UTF-8 text; save the file"),
     ] {

@@ -3,7 +3,7 @@
 use crate::measured::data::MeasuredGrid;
 use crate::measured::error::MeasuredError;
 use crate::measured::points::{expect_size, lines, nearest};
-use crate::measured::table::{TextRow, TextTable, number, value};
+use crate::measured::table::{TextRow, TextTable, expect_gamma, number, value};
 use ndarray::Array2;
 
 /// Least columns and rows of cells; a goniometer may have one sector.
@@ -24,11 +24,14 @@ pub(super) fn listed_cells(table: &TextTable<'_>) -> Result<MeasuredGrid, Measur
         };
         let c = [number(*line, c_from)?, number(*line, c_to)?];
         let gamma = [number(*line, gamma_from)?, number(*line, gamma_to)?];
+        expect_gamma(*line, gamma)?;
         cells.push((*line, [c, gamma], value(*line, light)?));
     }
     let [x, y] = [0, 1].map(|axis| lines(cells.iter().flat_map(|(_, ends, _)| ends[axis])));
     let [columns, rows] = [&x, &y].map(|edges| edges.len().saturating_sub(1));
-    expect_size([columns, rows], LEAST_CELLS)?;
+    expect_size(table.line(1), [columns, rows], LEAST_CELLS)?;
+    let beyond = cells.iter().find(|(_, [c, _], _)| c[1] > x[0] + 360.0 + SAME_ANGLE);
+    let last_line = beyond.map_or(table.line(1), |(line, ..)| *line);
     let mut values = Array2::from_elem((rows, columns), f64::NAN);
     let mut is_set = Array2::from_elem(values.dim(), false);
     let place = |edges: &[f64], [from, to]: [f64; 2]| {
@@ -45,23 +48,21 @@ pub(super) fn listed_cells(table: &TextTable<'_>) -> Result<MeasuredGrid, Measur
         }
         values[[row, column]] = value;
     }
-    whole_circle(MeasuredGrid { x, y, values })
+    whole_circle(MeasuredGrid { x, y, values }, last_line)
 }
 
-/// Cells around the whole axis; where C is not covered, nothing was measured.
+/// Cells around the whole axis; where C is not covered, nothing was measured. The last edge of C is in a line.
 ///
 /// # Errors
 ///
-/// [`MeasuredError::NoMap`] if the cells are more than a circle or γ leaves its range.
-pub(super) fn whole_circle(grid: MeasuredGrid) -> Result<MeasuredGrid, MeasuredError> {
+/// [`MeasuredError::WrongLine`] if the cells are more than a circle.
+pub(super) fn whole_circle(grid: MeasuredGrid, line: usize) -> Result<MeasuredGrid, MeasuredError> {
     let MeasuredGrid { mut x, y, values } = grid;
-    let [c, gamma] = [&x, &y].map(|edges| [edges[0], edges[edges.len() - 1]]);
-    if c[1] - c[0] > 360.0 + SAME_ANGLE || gamma[0] < 0.0 || gamma[1] > 180.0 + SAME_ANGLE {
-        let why = format!(
-            "C from {} to {} deg and γ from {} to {} deg; expected a circle of C, and γ from 0 to 180 deg",
-            c[0], c[1], gamma[0], gamma[1]
-        );
-        return Err(MeasuredError::of_file(why));
+    let c = [x[0], x[x.len() - 1]];
+    if c[1] - c[0] > 360.0 + SAME_ANGLE {
+        let why =
+            format!("C from {} to {} deg is more than a circle; give each cell once", c[0], c[1]);
+        return Err(MeasuredError::of_line(line, why));
     }
     if c[1] - c[0] >= 360.0 - SAME_ANGLE {
         return Ok(MeasuredGrid { x, y, values });

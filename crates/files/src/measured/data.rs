@@ -9,9 +9,18 @@ pub struct MeasuredMap {
     /// Its values and their places.
     pub values: MeasuredValues,
     /// Unit of its values, where the file gives one.
-    pub unit: Option<String>,
+    pub unit: Option<StatedUnit>,
     /// What was assumed.
     pub remarks: Vec<String>,
+}
+
+/// A unit that a comment, or the name of a column, gives.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StatedUnit {
+    /// The unit, such as `lx` or `cd/m²`.
+    pub unit: String,
+    /// The line of the comment or of the name, from 1.
+    pub line: usize,
 }
 
 /// Values by the places that a file gives.
@@ -63,7 +72,7 @@ pub struct PlainMatrix {
     /// Height along v, where a comment gives it.
     pub height: Option<StatedSize>,
     /// The side of the first row, where a comment gives it.
-    pub first_row: Option<FirstRow>,
+    pub first_row: Option<StatedFirstRow>,
 }
 
 /// A size that a comment gives.
@@ -71,6 +80,15 @@ pub struct PlainMatrix {
 pub struct StatedSize {
     /// The size, mm, above 0.
     pub size_mm: f64,
+    /// The line of the comment, from 1.
+    pub line: usize,
+}
+
+/// A side of the first row that a comment gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StatedFirstRow {
+    /// The side.
+    pub side: FirstRow,
     /// The line of the comment, from 1.
     pub line: usize,
 }

@@ -3,7 +3,7 @@
 use crate::luminaire::{Intensities, PlaneSymmetry};
 use crate::measured::error::MeasuredError;
 use crate::measured::points::GridPoints;
-use crate::measured::table::TextTable;
+use crate::measured::table::{TextRow, TextTable, expect_gamma, number};
 
 /// Share of measured directions in a value that is all but rounding, 1.
 const WHOLE: f64 = 1.0 - 1e-9;
@@ -30,15 +30,21 @@ impl MeasuredDirections {
     ///
     /// [`MeasuredError`] if the directions are no planes around the axis.
     pub(super) fn read(table: &TextTable<'_>) -> Result<Self, MeasuredError> {
+        for TextRow { line, cells } in &table.rows[1..] {
+            if let Some(gamma) = cells.get(1) {
+                expect_gamma(*line, [number(*line, gamma)?])?;
+            }
+        }
         let GridPoints { x: mut planes, y: mut angles, mut values } =
             GridPoints::read(table, [1, 2])?;
         let last = planes.len() - 1;
         let turn = planes[last] - planes[0];
         if turn > 360.0 + SAME_ANGLE {
             let (from, to) = (planes[0], planes[last]);
-            return Err(MeasuredError::of_file(format!(
+            let why = format!(
                 "planes C from {from} to {to} deg are more than a circle; give each plane once"
-            )));
+            );
+            return Err(MeasuredError::of_line(line_of_plane(table, to), why));
         }
         // The first plane again.
         if turn > 360.0 - SAME_ANGLE {
@@ -65,7 +71,9 @@ impl MeasuredDirections {
             let last = rows[rows.len() - 1];
             rows.push(last);
         }
-        let symmetry = symmetry(&planes)?;
+        let symmetry = symmetry(&planes).map_err(|why| {
+            MeasuredError::of_line(line_of_plane(table, planes[planes.len() - 1]), why)
+        })?;
         let first_deg = match symmetry {
             PlaneSymmetry::Rotational | PlaneSymmetry::None => planes[0],
             PlaneSymmetry::Quadrants | PlaneSymmetry::AboutC0 | PlaneSymmetry::AboutC90 => 0.0,
@@ -76,7 +84,7 @@ impl MeasuredDirections {
             let plane = move |column: usize| rows.iter().map(move |row| of(values[[*row, column]]));
             let candela = (0..planes.len()).flat_map(plane).collect();
             let own = Intensities::new(symmetry, planes.clone(), angles.clone(), candela);
-            own.map_err(|error| MeasuredError::of_file(error.to_string()))
+            own.map_err(|error| MeasuredError::of_line(table.line(1), error.to_string()))
         };
         Ok(Self {
             values: distribution(|own| if own.is_nan() { 0.0 } else { own })?,
@@ -110,7 +118,7 @@ impl MeasuredDirections {
 }
 
 /// The symmetry whose planes these are, in ascending order.
-fn symmetry(planes: &[f64]) -> Result<PlaneSymmetry, MeasuredError> {
+fn symmetry(planes: &[f64]) -> Result<PlaneSymmetry, String> {
     let [first, last] = [planes[0], planes[planes.len() - 1]];
     let step = planes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     if planes.len() == 1 {
@@ -126,9 +134,19 @@ fn symmetry(planes: &[f64]) -> Result<PlaneSymmetry, MeasuredError> {
     ];
     let found = parts.into_iter().find(|(_, ends)| *ends == [first, last]);
     found.map(|(symmetry, _)| symmetry).ok_or_else(|| {
-        MeasuredError::of_file(format!(
+        format!(
             "planes C from {first} to {last} deg are no circle; give all planes, or those of a symmetry: one, or from 0 to 90, \
              0 to 180 or 90 to 270 deg"
-        ))
+        )
     })
+}
+
+/// The first line of a plane C, deg.
+fn line_of_plane(table: &TextTable<'_>, plane: f64) -> usize {
+    let distance = |row: &TextRow<'_>| {
+        let c = row.cells.first().and_then(|cell| cell.parse::<f64>().ok());
+        c.map_or(f64::INFINITY, |c| (c - plane).abs())
+    };
+    let nearest = table.rows[1..].iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.map_or(table.line(1), |row| row.line)
 }

@@ -20,7 +20,7 @@ pub enum MeasuredError {
         /// What is wrong.
         problem: String,
     },
-    /// The lines make no map.
+    /// What is missing or contradicted is in no line.
     #[error("{0}")]
     NoMap(String),
 }

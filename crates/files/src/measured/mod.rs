@@ -9,7 +9,7 @@
 //!
 //! let csv = "# width_mm = 4\n# height_mm = 3\n# unit = lx\n812 835 841 829\n790 818 822 807\n771 796 803 788\n";
 //! let map = parse(csv.as_bytes())?;
-//! assert_eq!(map.unit.as_deref(), Some("lx"));
+//! assert_eq!(map.unit.map(|own| own.unit).as_deref(), Some("lx"));
 //! let MeasuredValues::Matrix(matrix) = map.values else { panic!("numbers alone") };
 //! let grid = matrix.centred([4.0, 3.0], FirstRow::Top);
 //! assert_eq!(grid.x, [-2.0, -1.0, 0.0, 1.0, 2.0]); // mm
@@ -24,8 +24,12 @@ mod error;
 mod forms;
 mod points;
 mod table;
+mod unit;
 
-pub use data::{FirstRow, MeasuredGrid, MeasuredMap, MeasuredValues, PlainMatrix, StatedSize};
+pub use data::{
+    FirstRow, MeasuredGrid, MeasuredMap, MeasuredValues, PlainMatrix, StatedFirstRow, StatedSize,
+    StatedUnit,
+};
 pub use directions::MeasuredDirections;
 pub use error::{MAX_MEASURED_BYTES, MeasuredError};
 
@@ -47,7 +51,7 @@ pub fn read(path: &Path) -> Result<MeasuredMap, MeasuredError> {
 ///
 /// # Errors
 ///
-/// [`MeasuredError::WrongLine`] or [`MeasuredError::NoMap`] if they are no map.
+/// [`MeasuredError::WrongLine`] if they are no map.
 pub fn parse(bytes: &[u8]) -> Result<MeasuredMap, MeasuredError> {
     let text = table::text(bytes)?;
     forms::measured_map(&TextTable::new(text)?)

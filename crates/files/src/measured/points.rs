@@ -36,16 +36,17 @@ impl GridPoints {
             points.push((*line, place, value(*line, light)?));
         }
         let [x, y] = [0, 1].map(|axis| lines(points.iter().map(|(_, place, _)| place[axis])));
-        expect_size([x.len(), y.len()], least)?;
+        let first_line = table.line(1);
+        expect_size(first_line, [x.len(), y.len()], least)?;
         if 2 * points.len() < x.len() * y.len() {
             let why = format!(
-                "{} points have {} different places in the first column and {} in the second, so they are no rows and columns; \
-                 interpolate them to a grid before",
+                "the {} points from here on have {} different places in the first column and {} in the second, so they are no rows \
+                 and columns; interpolate them to a grid before",
                 points.len(),
                 x.len(),
                 y.len()
             );
-            return Err(MeasuredError::of_file(why));
+            return Err(MeasuredError::of_line(first_line, why));
         }
         let mut values = Array2::from_elem((y.len(), x.len()), f64::NAN);
         let mut is_set = Array2::from_elem(values.dim(), false);
@@ -60,20 +61,26 @@ impl GridPoints {
     }
 }
 
-/// Refuses too few columns and rows, and too many cells.
+/// Refuses too few columns and rows, and too many cells, of values that begin in a line.
 ///
 /// # Errors
 ///
-/// [`MeasuredError::NoMap`] with their numbers.
+/// [`MeasuredError::WrongLine`] with their numbers.
 pub(super) fn expect_size(
+    line: usize,
     [columns, rows]: [usize; 2],
     least: [usize; 2],
 ) -> Result<(), MeasuredError> {
     if columns < least[0] || rows < least[1] || columns.saturating_mul(rows) > MOST_CELLS {
-        return Err(MeasuredError::of_file(format!(
-            "{columns} by {rows} values; expected at least {} by {}, and at most {MOST_CELLS} in all",
-            least[0], least[1]
-        )));
+        let plural = |count: usize| if count == 1 { "" } else { "s" };
+        let why = format!(
+            "the values from here on make {columns} column{} and {rows} row{}; expected at least {} by {}, and at most {MOST_CELLS} values in all",
+            plural(columns),
+            plural(rows),
+            least[0],
+            least[1]
+        );
+        return Err(MeasuredError::of_line(line, why));
     }
     Ok(())
 }

@@ -3,6 +3,9 @@
 use crate::measured::error::MeasuredError;
 use std::borrow::Cow;
 
+/// Excess of an angle that is rounding, deg.
+const ANGLE_ROUNDING: f64 = 1e-6;
+
 /// A table as text.
 #[derive(Debug)]
 pub(super) struct TextTable<'a> {
@@ -75,9 +78,18 @@ impl<'a> TextTable<'a> {
         }
         retain_unmeasured(&mut rows, &tab_lines, separator.flatten());
         if rows.is_empty() {
-            return Err(MeasuredError::of_file("no values; expected a table"));
+            let last = text.lines().count().max(1);
+            return Err(MeasuredError::of_line(
+                last,
+                "the file ends without values; expected a table",
+            ));
         }
         Ok(Self { comments, rows })
+    }
+
+    /// The line of a row, or of the last one, from 1.
+    pub(super) fn line(&self, row: usize) -> usize {
+        self.rows[row.min(self.rows.len() - 1)].line
     }
 
     /// The value and line of a comment.
@@ -119,6 +131,24 @@ pub(super) fn value(line: usize, cell: &str) -> Result<f64, MeasuredError> {
         ));
     }
     Ok(value)
+}
+
+/// Refuses angles γ beyond a sphere.
+///
+/// # Errors
+///
+/// [`MeasuredError::WrongLine`] with the angle.
+pub(super) fn expect_gamma(
+    line: usize,
+    angles: impl IntoIterator<Item = f64>,
+) -> Result<(), MeasuredError> {
+    let range = 0.0..=180.0 + ANGLE_ROUNDING;
+    match angles.into_iter().find(|gamma| !range.contains(gamma)) {
+        Some(gamma) => {
+            Err(MeasuredError::of_line(line, format!("γ is {gamma} deg, expected 0 to 180 deg")))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The end of lines: LF, also after CR, or CR alone.

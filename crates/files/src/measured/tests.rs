@@ -6,7 +6,7 @@ fn cells(map: MeasuredMap) -> MeasuredGrid {
     match map.values {
         MeasuredValues::Matrix(own) => {
             let size = [own.width, own.height].map(|size| size.unwrap().size_mm);
-            let first = own.first_row.unwrap_or(FirstRow::Top);
+            let first = own.first_row.map_or(FirstRow::Top, |own| own.side);
             own.centred(size, first)
         }
         MeasuredValues::Surface(grid)
@@ -29,7 +29,7 @@ fn every_form_of_a_map_gives_the_same_cells() {
     ];
     for text in forms {
         let map = parse(text.as_bytes()).unwrap();
-        let unit = map.unit.clone();
+        let unit = map.unit.clone().map(|own| own.unit);
         let grid = cells(map);
         assert_eq!((&grid.x[..], &grid.y[..]), (&[-1.0, 0.0, 1.0][..], &[-2.0, 0.0, 2.0][..]));
         assert_eq!(grid.values, ndarray::array![[1.0, 2.5], [3.0, 4.0]], "{text}");
@@ -40,13 +40,35 @@ fn every_form_of_a_map_gives_the_same_cells() {
 #[test]
 fn what_is_no_map_is_refused_with_its_line() {
     for (text, words) in [
-        ("", "no values"),
+        ("", "line 1: the file ends without values"),
+        ("# a\n\n# b\n", "line 3: the file ends without values"),
         ("# width_mm = -1\n# height_mm = 1\n1 2\n3 4\n", "line 1: width_mm is not above 0"),
         ("# width_mm = 1\n# height_mm = 1\n1 2\n3\n", "line 4: 1 cells"),
         ("# width_mm = 1\n# height_mm = 1\n1 2\n3 x\n", "line 4: `x` is not"),
         ("# width_mm = 1\n# height_mm = 1\n# rows = up\n1 2\n3 4\n", "line 3: rows must"),
-        ("# width_mm = 1\n# height_mm = 1\n0 0\n0 0\n", "zero or missing"),
-        ("# width_mm = 1\n# height_mm = 1\n1 2\n", "2 by 1 values"),
+        (
+            "# width_mm = 1\n# height_mm = 1\n0 0\n0 0\n",
+            "line 3: all values from here on are zero or missing",
+        ),
+        ("x_mm,y_mm,e_lx\n0,0,0\n1,1,\n0,1,nan\n", "line 2: all values"),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n0,2,0,0\n-2,0,0,0\n",
+            "line 4: all values",
+        ),
+        (
+            "# width_mm = 1\n# height_mm = 1\n1 2\n",
+            "line 3: the values from here on make 2 columns and 1 row; expected at least 2 by 2",
+        ),
+        ("# tall\n1\n2\n3\n", "line 2: the values from here on make 1 column and 3 rows"),
+        (
+            "x_mm,y_mm,e_lx\n0,0,1\n1,0,2\n2,0,3\n",
+            "line 2: the values from here on make 3 columns and 1 row",
+        ),
+        (
+            "x_mm,y_mm,e_lx\n\n0,0,1\n0,1,2\n",
+            "line 3: the values from here on make 1 column and 2 rows",
+        ),
+        ("x_mm,y_mm,e_lx\n", "line 1: the values from here on make 0 columns"),
         ("a,b,c\n1,2,3\n", "line 1: not a map"),
         ("sector_deg,radius_mm,e\n0,0,1\n", "rings"),
         (
@@ -67,14 +89,81 @@ fn what_is_no_map_is_refused_with_its_line() {
             "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n3,4,3,1\n-2,0,1,2\n",
             "line 4: the row does not begin where its neighbour ends",
         ),
-        ("x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n2,2,3\n", "no rows and columns"),
+        (
+            "x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n2,2,3\n",
+            "line 2: the 3 points from here on have 3 different places",
+        ),
         ("x_mm,y_mm,e_lx\n0,0,1\n1,1,2\n0,1,3\n1,1,3\n", "line 5: a second value"),
         ("x_mm,y_mm,e_lx\n0,0\n", "line 2: fewer than three"),
         (
             "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n0,2,3\n-2,0,1,2\n",
-            "do not fit together",
+            "line 4: 3 cells, but the first row has 4",
         ),
-        ("e in lx,u from in mm\n,u to in mm\n,,\n0,2\n-2,0\n", "0 by 2 values"),
+        (
+            "e in lx,u from in mm\n,u to in mm\n,,\n0,2\n-2,0\n",
+            "line 4: the values from here on make 0 columns and 2 rows",
+        ),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0\n,,,\n0,2,3,4\n-2,0,1,2\n",
+            "line 2: 3 cells, but the row before has 4",
+        ),
+        (
+            "e in lx,u from in mm,1,0\n,u to in mm,0,1\n,,,\n0,2,3,4\n-2,0,1,2\n",
+            "line 1: the edge 0 follows 1",
+        ),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,0\n,,,\n0,2,3,4\n-2,0,1,2\n",
+            "line 2: the edge 0 follows 0",
+        ),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n,,,\n0,2,3,4\n0,0,1,2\n",
+            "line 5: the edge 0 follows 0",
+        ),
+        (
+            "e in lx,u from in mm,-1,0\n,u to in mm,0,1\n",
+            "line 2: a matrix of a report has three header rows",
+        ),
+        (
+            "i in cd,c from in deg,0\n,c to in deg,361\n,,\n0,90,3\n90,180,1\n",
+            "line 2: C from 0 to 361 deg is more than a circle",
+        ),
+        (
+            "i in cd,c from in deg,0\n,c to in deg,360\n,,\n0,90,3\n90,181,1\n",
+            "line 5: γ is 181 deg",
+        ),
+        (
+            "c_from_deg,c_to_deg,gamma_from_deg,gamma_to_deg,i_cd\n0,360,0,45,9\n0,360,45,190,9\n",
+            "line 3: γ is 190 deg",
+        ),
+        (
+            "c_from_deg,c_to_deg,gamma_from_deg,gamma_to_deg,i_cd\n0,200,0,45,9\n0,200,45,90,9\n200,380,0,45,9\n",
+            "line 4: C from 0 to 380 deg",
+        ),
+        (
+            "c_from_deg,c_to_deg,gamma_from_deg,gamma_to_deg,i_cd\n0,360,0,45,9\n",
+            "line 2: the values from here on make 1 column and 1 row",
+        ),
+        (
+            "c_deg,gamma_deg,i_cd\n0,0,9\n0,90,9\n0,181,9\n",
+            "line 4: γ is 181 deg, expected 0 to 180 deg",
+        ),
+        ("c_deg,gamma_deg,i_cd\n0,-5,9\n0,90,9\n", "line 2: γ is -5 deg"),
+        (
+            "c_deg,gamma_deg,i_cd\n0,0,9\n",
+            "line 2: the values from here on make 1 column and 1 row",
+        ),
+        (
+            "c_deg,gamma_deg,i_cd\n0,0,9\n0,90,9\n40,90,9\n50,90,9\n40,0,9\n50,0,9\n",
+            "line 5: planes C from 0 to 50 deg are no circle",
+        ),
+        (
+            "c_deg,gamma_deg,i_cd\n0,0,9\n0,90,9\n380,90,9\n380,0,9\n",
+            "line 4: planes C from 0 to 380 deg are more than a circle",
+        ),
+        (
+            "c_deg,gamma_deg,i_cd\n0,0,1e20\n0,90,9\n",
+            "line 2: no usable distribution: an intensity of 100000000000000000000 cd",
+        ),
     ] {
         let said = parse(text.as_bytes()).err().unwrap().to_string();
         assert!(said.contains(words), "{text:?}: {said}");
@@ -86,7 +175,7 @@ fn directions_are_linear_in_between_and_planes_follow_a_symmetry() {
     let text = "c_deg,gamma_deg,intensity_cd\n0,0,100\n0,45,80\n0,90,40\n90,45,60\n90,90,\n";
     let map = parse(text.as_bytes()).unwrap();
     assert!(map.remarks[0].contains("four equal quadrants"), "{:?}", map.remarks);
-    assert_eq!(map.unit.as_deref(), Some("cd"));
+    assert_eq!(map.unit, Some(StatedUnit { unit: "cd".to_owned(), line: 1 }));
     let MeasuredValues::Directions(own) = map.values else { panic!("no directions") };
     assert_eq!(own.peak(), 100.0);
     for (c, gamma, expected) in [
@@ -112,7 +201,7 @@ fn lines_may_end_in_cr_and_another_encoding_is_refused_with_its_line() {
     for end in ["\n", "\r\n", "\r"] {
         let text = text.replace('\n', end);
         let map = parse(text.as_bytes()).unwrap();
-        let unit = map.unit.clone();
+        let unit = map.unit.clone().map(|own| own.unit);
         assert_eq!(cells(map).values, ndarray::array![[1.0, 2.0], [3.0, 4.0]], "{end:?}");
         assert_eq!(unit.as_deref(), Some("lx"));
         let said = parse(text.replace('4', "x").as_bytes()).err().unwrap().to_string();

@@ -85,7 +85,7 @@ proptest! {
         let turn = first % rows.len();
         rows.rotate_left(turn);
         let found = read(&format!("# a map\n{head},e_lx,more\n{}", rows.concat()), end)?;
-        prop_assert_eq!(found.unit.as_deref(), Some("lx"));
+        prop_assert_eq!(found.unit.as_ref().map(|own| &*own.unit), Some("lx"));
         let grid = match (found.values, is_image) {
             (MeasuredValues::Surface(grid), false) | (MeasuredValues::Image(grid), true) => grid,
             (other, _) => return Err(TestCaseError::fail(format!("{other:?}"))),
@@ -128,7 +128,7 @@ proptest! {
             rows.concat()
         );
         let found = read(&text, end)?;
-        prop_assert_eq!(found.unit.as_deref(), Some("cd"));
+        prop_assert_eq!(found.unit.as_ref().map(|own| &*own.unit), Some("cd"));
         match (found.values, kind) {
             (MeasuredValues::Surface(grid), "u") | (MeasuredValues::Image(grid), "right") => {
                 map.expect(&grid)?;
@@ -168,7 +168,7 @@ proptest! {
         let MeasuredValues::Matrix(matrix) = found.values else {
             return Err(TestCaseError::fail("no matrix"));
         };
-        prop_assert_eq!(matrix.first_row, Some(first_row));
+        prop_assert_eq!(matrix.first_row.map(|own| own.side), Some(first_row));
         prop_assert_eq!(matrix.width.is_some(), !comma || separator == ",");
         map.expect_values(&matrix.centred([2.0, 3.0], first_row))?;
     }

@@ -4,7 +4,7 @@
 use crate::measured::computed::Comparable;
 use lumiduct_base::error::Error;
 use lumiduct_files::measured::{
-    FirstRow, MeasuredError, MeasuredGrid, MeasuredValues, PlainMatrix, StatedSize,
+    FirstRow, MeasuredError, MeasuredGrid, MeasuredValues, PlainMatrix, StatedFirstRow, StatedSize,
 };
 use std::path::Path;
 
@@ -71,11 +71,16 @@ pub(crate) fn placed(
     };
     let width = size("width_mm", matrix.width, place.width_mm)?;
     let height = size("height_mm", matrix.height, place.height_mm)?;
-    let own = matrix.first_row;
-    if own.is_some() && place.first_row.is_some() && own != place.first_row {
-        return Err(MeasuredError::of_file("`# rows = ...` of the file and --rows differ"));
-    }
-    let first_row = place.first_row.or(own).unwrap_or(FirstRow::Top);
+    let first_row = match (matrix.first_row, place.first_row) {
+        (Some(StatedFirstRow { side, line }), Some(option)) if side != option => {
+            return Err(MeasuredError::of_line(
+                line,
+                "`# rows = ...` of the file and --rows differ",
+            ));
+        }
+        (Some(StatedFirstRow { side, .. }), _) => side,
+        (None, option) => option.unwrap_or(FirstRow::Top),
+    };
     Ok(matrix.centred([width, height], first_row))
 }
 

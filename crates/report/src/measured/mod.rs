@@ -31,7 +31,9 @@ use crate::measured::sphere_cells::sphere_of_cells;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_percent;
 use lumiduct_files::luminaire;
-use lumiduct_files::measured::{self, MeasuredError, MeasuredGrid, MeasuredMap, MeasuredValues};
+use lumiduct_files::measured::{
+    self, MeasuredError, MeasuredGrid, MeasuredMap, MeasuredValues, StatedUnit,
+};
 use ndarray::{Array2, Axis, Slice};
 use std::path::Path;
 
@@ -140,11 +142,12 @@ fn read_map(
     let computed = ComputedCells::of(table);
     let plain = |unit: &str| unit.trim().to_lowercase().replace('²', "2").replace(' ', "");
     match &unit {
-        Some(unit) if plain(unit) != plain(&computed.unit) => {
-            return Err(refuse(MeasuredError::of_file(format!(
-                "the values are in `{unit}`, but {} is in {}; convert them, or name another sensor with --sensor",
+        Some(StatedUnit { unit, line }) if plain(unit) != plain(&computed.unit) => {
+            let why = format!(
+                "the values are in `{unit}`, but {} is in {}; convert them, correct the unit here, or name another sensor with --sensor",
                 computed.name, computed.unit
-            ))));
+            );
+            return Err(refuse(MeasuredError::of_line(*line, why)));
         }
         Some(_) => {}
         None => {

@@ -132,20 +132,20 @@ fn planes_of_a_symmetry_are_remarked_and_others_refused() {
     }
     let head = "c_from_deg,c_to_deg,gamma_from_deg,gamma_to_deg,intensity_cd\n";
     for (text, words) in [
-        (directions(0.0, tens(40)), "planes C from 0 to 40 deg are no circle; give all planes"),
-        (directions(0.0, tens(390)), "more than a circle"),
+        (directions(0.0, tens(40)), "far.csv:147: planes C from 0 to 40 deg are no circle"),
+        (directions(0.0, tens(390)), "are more than a circle; give each plane once"),
         (
             "c_deg,gamma_deg,intensity_cd\n0,0,1\n0,90,-3\n".to_owned(),
             "far.csv:3: the value `-3` is below 0",
         ),
         (
             "c_deg,gamma_deg,intensity_cd\n0,0,1\n0,190,3\n".to_owned(),
-            "an angle lies outside of 0 to 180",
+            "far.csv:3: γ is 190 deg, expected 0 to 180 deg",
         ),
         ("c_deg,gamma_deg,intensity_W/sr\n0,0,1\n0,90,3\n".to_owned(), "far.intensity is in cd"),
         (format!("{head}0,180,0,9,1\n0,360,9,90,1\n"), "far.csv:3: the cell is not one step"),
         (format!("{head}0,360,0,9,1\n0,360,0,9,1\n0,360,9,90,1\n"), "far.csv:3: a second value"),
-        (format!("{head}0,360,0,9,1\n0,360,9,190,1\n"), "γ from 0 to 190 deg"),
+        (format!("{head}0,360,0,9,1\n0,360,9,190,1\n"), "far.csv:3: γ is 190 deg"),
         (format!("{head}0,360,0,9\n"), "far.csv:2: fewer than five cells"),
     ] {
         let said = compare(&text).err().unwrap().to_string();

@@ -46,7 +46,7 @@ fn a_matrix_has_the_size_and_first_row_of_the_file_or_of_the_options() {
         (plain, wider, "m.csv: a matrix of numbers without its size; add the line `# height_mm"),
         ("# width_mm = 1\n1 2\n3 4\n", MatrixPlace::default(), "or use --height-mm"),
         (sized, wider, "m.csv:1: width_mm is 2 here, but 3 in --width-mm"),
-        (&upward, top, "m.csv: `# rows = ...` of the file and --rows differ"),
+        (&upward, top, "m.csv:3: `# rows = ...` of the file and --rows differ"),
         (places, top, "m.csv: the file gives its own places"),
         ("# width_mm = 1\n# height_mm = 1\n1 2\n3 x\n", wider, "m.csv:4: `x` is not"),
     ] {
@@ -81,6 +81,10 @@ fn units_and_places_that_do_not_fit_are_refused() {
     assert_eq!(said(measured, &red), "exit.illuminance.from_red");
     assert!(said(measured, &sensor("exi")).contains("--sensor exi"));
     assert!(said(&measured.replace("e_lx", "l_cd/m2"), &none).contains("are in `cd/m2`"));
+    let luminance = said(&measured.replace("e_lx", "luminance_cd_m2"), &none);
+    assert!(luminance.contains("m.csv:1: the values are in `cd/m²`, but exit"), "{luminance}");
+    let commented = said(&format!("# a\n# unit = cd\n{measured}"), &none);
+    assert!(commented.contains("m.csv:2: the values are in `cd`"), "{commented}");
     assert!(
         said(&measured.replace("x_mm,y_mm", "u_deg,v_deg"), &none)
             .contains("no map with places in degrees")

@@ -245,7 +245,11 @@ impl Manual<'_> {
             Some("string") => "text".into(),
             Some("boolean") => "true or false".into(),
             Some("array") => match self.link(&schema["items"]) {
-                Some(link) => format!("array of {link}"),
+                Some(link) => {
+                    let limits = wording::limits_of_length(schema, "item");
+                    let limits = limits.map(|limits| format!(", {limits}")).unwrap_or_default();
+                    format!("array of {link}{limits}")
+                }
                 None => format!("array of {}{unit}", wording::length(schema, None)),
             },
             Some(_) | None => match self.link(&schema["additionalProperties"]) {

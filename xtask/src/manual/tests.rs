@@ -30,6 +30,18 @@ fn every_key_and_kind_of_the_schema_is_on_the_page() {
 }
 
 #[test]
+fn limits_of_arrays_of_tables_are_on_the_page() {
+    let page = markdown();
+    for row in [
+        "| `layers` | array of [layer](#layer), 1 to 200 items |",
+        "- `mixture`: array of [mixture part](#mixture-part), at least 1 item. ",
+        "| `check` | array of [`check`](#check) |",
+    ] {
+        assert!(page.contains(row), "{row}");
+    }
+}
+
+#[test]
 fn every_link_leads_to_one_heading() {
     for page in pages().map(|(_, markdown)| markdown) {
         let headings: Vec<_> = page

@@ -91,15 +91,20 @@ pub fn length(schema: &Json, unit: Option<&str>) -> String {
         Some("array") => "array",
         Some(_) | None => "table",
     };
-    let (min, max) = (schema["minItems"].as_u64(), schema["maxItems"].as_u64());
     let unit = unit.map(|unit| format!(" in {unit}")).unwrap_or_default();
-    let plural = |count: Option<u64>| if count == Some(1) { "" } else { "s" };
-    match (min, max) {
-        (Some(min), Some(max)) if min == max => format!("{min} {noun}{}{unit}", plural(max.into())),
-        (Some(min), Some(max)) => format!("{min} to {max} {noun}s{unit}"),
-        (Some(min), None) => format!("at least {min} {noun}{}{unit}", plural(min.into())),
-        (None, Some(max)) => format!("at most {max} {noun}s{unit}"),
-        (None, None) => format!("{noun}s{unit}"),
+    let limits = limits_of_length(schema, noun).unwrap_or_else(|| format!("{noun}s"));
+    limits + &unit
+}
+
+/// How many entries an array may have, if that is limited: "1 to 200 tables".
+pub fn limits_of_length(schema: &Json, noun: &str) -> Option<String> {
+    let plural = |count: u64| if count == 1 { "" } else { "s" };
+    match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+        (Some(min), Some(max)) if min == max => Some(format!("{min} {noun}{}", plural(max))),
+        (Some(min), Some(max)) => Some(format!("{min} to {max} {noun}s")),
+        (Some(min), None) => Some(format!("at least {min} {noun}{}", plural(min))),
+        (None, Some(max)) => Some(format!("at most {max} {noun}s")),
+        (None, None) => None,
     }
 }
 

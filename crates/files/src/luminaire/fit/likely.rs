@@ -1,6 +1,6 @@
 //! The table whose interpolation most likely gives the means over cells.
 
-use crate::luminaire::fit::limit::limited;
+use crate::luminaire::fit::limit::{CellsOfTable, limited};
 use crate::luminaire::fit::nodes::{NodeGrid, Planes};
 use ndarray::{Array2, ArrayView2};
 
@@ -27,7 +27,8 @@ pub(crate) fn most_likely(
         };
         values *= &(grid.shared(ratio) / &solid_angles);
     }
-    let mut values = limited(&values, spread, &candela, std_errors, grid, planes);
+    let cells = CellsOfTable { candela: &candela, std_errors, grid, planes };
+    let mut values = limited(&values, spread, &solid_angles, cells);
     // Dark nodes beside bright ones shrink with every step and never reach zero.
     let peak = values.iter().copied().fold(0.0, f64::max);
     values.mapv_inplace(|value| if value < ROUNDING * peak { 0.0 } else { value });

@@ -1,10 +1,11 @@
 //! A table without overshoot beside edges of the light.
 //!
-//! A table cannot hold an edge between its angles, and the most likely one swings about it. It differs from the smoothest table, in
+//! A table cannot hold an edge between its angles, and the most likely one overshoots about it. It differs from the smoothest table, in
 //! which every cell spreads its flux over its nodes by their shares, in that cells spread it otherwise. Of these differences each
 //! cell keeps the share that leaves all nodes within limits (Zalesak, J. Comput. Phys. 31 (1979) 335, for cells by Löhner et al.,
-//! Int. J. Numer. Methods Fluids 7 (1987) 1093), where nodes would otherwise be beyond them. So no flux is lost. A value may go beyond the cells around it as far as all sides
-//! support it, so that what is linear between the nodes keeps its peaks; all of them count with two standard errors.
+//! Int. J. Numer. Methods Fluids 7 (1987) 1093), where nodes would otherwise be beyond them. So no flux is lost. A value may go
+//! beyond the cells around it as far as all sides support it, so that what is linear between the nodes keeps its peaks; all of them
+//! count with two standard errors.
 
 use crate::luminaire::fit::nodes::{NodeGrid, NodeShares, Planes};
 use ndarray::{Array2, ArrayView2};
@@ -23,29 +24,39 @@ struct NodeSide {
     extrapolated: Weighted,
 }
 
-/// What is nearest to the most likely values within the limits, from the smoothest ones; planes by angles.
+/// Means over cells, and the nodes of a table of them.
+#[derive(Clone, Copy)]
+pub(crate) struct CellsOfTable<'a> {
+    /// Means, rings by sectors, cd.
+    pub(crate) candela: &'a Array2<f64>,
+    /// Their standard errors, cd.
+    pub(crate) std_errors: ArrayView2<'a, f64>,
+    pub(crate) grid: &'a NodeGrid,
+    pub(crate) planes: &'a Planes,
+}
+
+/// What is nearest to the most likely values within the limits, from the smoothest ones; planes by angles. Each node has the
+/// solid angle of its shares of all cells.
 pub(crate) fn limited(
     likely: &Array2<f64>,
     smoothest: Array2<f64>,
-    candela: &Array2<f64>,
-    std_errors: ArrayView2<'_, f64>,
-    grid: &NodeGrid,
-    planes: &Planes,
+    solid_angles: &Array2<f64>,
+    cells: CellsOfTable<'_>,
 ) -> Array2<f64> {
-    let solid_angles = grid.shared(|_| 1.0);
-    let [least, most] = limits(candela, std_errors, grid, planes);
+    let CellsOfTable { candela, grid, .. } = cells;
+    let [least, most] = limits(cells);
     // Flux over the solid angle of the cell that a cell moves to each of its nodes.
     let moved = |cell: [usize; 2]| {
         let own = grid.mean(likely, cell);
         let held = candela[cell];
-        grid.pairs(cell).map(move |((angle, plane), share)| {
-            let to = if own > 0.0 { share * likely[[plane, angle]] / own } else { share };
-            ((angle, plane), held * (to - share))
+        grid.pairs(cell).map(move |(node, share)| {
+            let to = if own > 0.0 { share * likely[node] / own } else { share };
+            (node, held * (to - share))
         })
     };
     let sums = |sign: f64| {
         grid.collected(|cell| moved(cell).map(move |(node, own)| (node, (sign * own).max(0.0))))
-            / &solid_angles
+            / solid_angles
     };
     // What a node can have of all that is added to it, and of all that is taken, 1.
     let [mut added, mut taken] = [1.0, 1.0].map(|room| Array2::from_elem(grid.shape, room));
@@ -53,12 +64,7 @@ pub(crate) fn limited(
     loop {
         let kept = |cell: [usize; 2]| {
             let room = moved(cell).map(|(node, own)| {
-                let [plane, angle] = [node.1, node.0];
-                if own == 0.0 {
-                    1.0
-                } else {
-                    (if own > 0.0 { &added } else { &taken })[[plane, angle]]
-                }
+                if own == 0.0 { 1.0 } else { (if own > 0.0 { &added } else { &taken })[node] }
             });
             room.fold(1.0, f64::min)
         };
@@ -66,7 +72,7 @@ pub(crate) fn limited(
             let kept = kept(cell);
             moved(cell).map(move |(node, own)| (node, kept * own))
         });
-        let values = &smoothest + changes / &solid_angles;
+        let values = &smoothest + changes / solid_angles;
         // Whatever the other nodes keep, these shares hold a limit.
         let above = hold(&values - &most, &mut added, &(&most - &smoothest), &to_add);
         let below = hold(&least - &values, &mut taken, &(&smoothest - &least), &to_take);
@@ -76,7 +82,8 @@ pub(crate) fn limited(
     }
 }
 
-/// Reduces what nodes beyond a limit can have to what is left to the limit, and tells whether any node was.
+/// Where a node exceeds its limit, reduces the share of its changes that it keeps, so that the limit holds. Returns whether any share
+/// was reduced.
 fn hold(
     excess: Array2<f64>,
     room: &mut Array2<f64>,
@@ -95,12 +102,8 @@ fn hold(
 }
 
 /// The least and the largest values that the cells around each node support, planes by angles.
-fn limits(
-    candela: &Array2<f64>,
-    std_errors: ArrayView2<'_, f64>,
-    grid: &NodeGrid,
-    planes: &Planes,
-) -> [Array2<f64>; 2] {
+fn limits(cells: CellsOfTable<'_>) -> [Array2<f64>; 2] {
+    let CellsOfTable { candela, std_errors, grid, planes } = cells;
     let sectors = candela.ncols();
     let last = grid.shape.1 - 1;
     let circle = planes.of_circle.len();
@@ -193,6 +196,15 @@ mod tests {
     use super::*;
     use crate::luminaire::intensities::PlaneSymmetry;
 
+    fn limits_without_errors(
+        candela: &Array2<f64>,
+        grid: &NodeGrid,
+        planes: &Planes,
+    ) -> [Array2<f64>; 2] {
+        let errors = Array2::zeros(candela.dim());
+        limits(CellsOfTable { candela, std_errors: errors.view(), grid, planes })
+    }
+
     #[test]
     fn linear_distributions_are_at_their_limits() {
         let planes = Planes::of(PlaneSymmetry::None, 4);
@@ -204,7 +216,7 @@ mod tests {
         });
         let mut cells = Array2::zeros((16, 8));
         grid.cells().for_each(|cell| cells[cell] = grid.mean(&table, cell));
-        let [least, most] = limits(&cells, Array2::zeros(cells.dim()).view(), &grid, &planes);
+        let [least, most] = limits_without_errors(&cells, &grid, &planes);
         for (node, value) in table.indexed_iter() {
             assert!(least[node] <= value + 1e-9 && most[node] >= value - 1e-9, "{node:?}");
         }
@@ -217,7 +229,7 @@ mod tests {
         for lit in [6, 7] {
             let cells =
                 Array2::from_shape_fn((16, 1), |(ring, _)| if ring < lit { 100.0 } else { 0.0 });
-            let [least, most] = limits(&cells, Array2::zeros(cells.dim()).view(), &grid, &planes);
+            let [least, most] = limits_without_errors(&cells, &grid, &planes);
             let shown = |limit: &Array2<f64>| limit.row(0).to_vec();
             assert!(most.iter().all(|value| *value < 100.0 + 1e-9), "{:?}", shown(&most));
             assert!(shown(&least)[..3].iter().all(|value| *value == 100.0), "{:?}", shown(&least));

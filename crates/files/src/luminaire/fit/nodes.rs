@@ -61,12 +61,12 @@ impl NodeShares {
         nodes.copied().all(|node| (share_of(self, node) - share_of(other, node)).abs() < SAME_SHARE)
     }
 
-    /// The nodes of a cell, (own, other), and their shares.
-    pub(crate) fn pairs(&self, other: &Self) -> impl Iterator<Item = ((usize, usize), f64)> {
+    /// The nodes of a cell, [other, own], and their shares.
+    pub(crate) fn pairs(&self, other: &Self) -> impl Iterator<Item = ([usize; 2], f64)> {
         let places = [(0, 0), (0, 1), (1, 0), (1, 1)];
         let (own, across) = (*self, *other);
         places.into_iter().map(move |(along, over)| {
-            ((own.nodes[along], across.nodes[over]), own.shares[along] * across.shares[over])
+            ([across.nodes[over], own.nodes[along]], own.shares[along] * across.shares[over])
         })
     }
 }
@@ -117,17 +117,17 @@ impl NodeGrid {
         }
     }
 
-    /// The nodes of a cell, (angle, plane), and their shares.
+    /// The nodes of a cell, [plane, angle], and their shares.
     pub(crate) fn pairs(
         &self,
         [ring, sector]: [usize; 2],
-    ) -> impl Iterator<Item = ((usize, usize), f64)> {
+    ) -> impl Iterator<Item = ([usize; 2], f64)> {
         self.of_ring[ring].pairs(&self.of_sector[sector])
     }
 
     /// The mean over a cell of a table, planes by angles.
     pub(crate) fn mean(&self, values: &Array2<f64>, cell: [usize; 2]) -> f64 {
-        self.pairs(cell).map(|((angle, plane), share)| share * values[[plane, angle]]).sum()
+        self.pairs(cell).map(|(node, share)| share * values[node]).sum()
     }
 
     /// The sectors in groups of those that have the same mean in every table.
@@ -149,15 +149,15 @@ impl NodeGrid {
     }
 
     /// Sums over cells of their solid angles times a factor of each node, planes by angles.
-    pub(crate) fn collected<I: Iterator<Item = ((usize, usize), f64)>>(
+    pub(crate) fn collected<I: Iterator<Item = ([usize; 2], f64)>>(
         &self,
         factors: impl Fn([usize; 2]) -> I,
     ) -> Array2<f64> {
         let mut sums = Array2::zeros(self.shape);
         for cell in self.cells() {
             let weight = self.of_ring[cell[0]].weight;
-            for ((angle, plane), factor) in factors(cell) {
-                sums[[plane, angle]] += weight * factor;
+            for (node, factor) in factors(cell) {
+                sums[node] += weight * factor;
             }
         }
         // All planes meet at the poles.

@@ -21,7 +21,7 @@ fn the_light_guide_of_the_scenes_is_sound() {
     assert!((share - (TAU / 96.0).sin() / (TAU / 96.0)).abs() < 1e-4, "{share}");
 }
 
-/// A mesh of which a face has two different layers.
+/// A mesh with two different layers on one face.
 #[test]
 fn light_from_outside_meets_the_layers_of_a_mesh_in_the_opposite_order() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/glass_lightguide_mesh.toml");

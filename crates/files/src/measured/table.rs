@@ -70,10 +70,15 @@ impl<'a> TextTable<'a> {
                     Cow::Borrowed(cell)
                 }
             };
-            let cells = match separator {
-                Some(letter) => line.split(letter).map(plain).collect(),
-                None => line.split_whitespace().map(plain).collect(),
-            };
+            // Without this a row has room for four cells, which is most of the memory of a long file of one column.
+            let mut cells = Vec::with_capacity(match separator {
+                Some(letter) => line.matches(letter).count() + 1,
+                None => line.split_whitespace().count(),
+            });
+            match separator {
+                Some(letter) => cells.extend(line.split(letter).map(plain)),
+                None => cells.extend(line.split_whitespace().map(plain)),
+            }
             rows.push(TextRow { line: place + 1, cells });
         }
         retain_unmeasured(&mut rows, &tab_lines, separator.flatten());

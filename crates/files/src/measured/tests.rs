@@ -227,6 +227,15 @@ fn rows_of_tabs_are_rows_without_a_value_in_a_matrix_alone() {
 }
 
 #[test]
+fn rows_take_the_memory_of_their_cells() {
+    for text in ["1\n2\n", "1;2\n3;4\n", "1 2 3 4 5\n"] {
+        for row in TextTable::new(text).unwrap().rows {
+            assert_eq!(row.cells.capacity(), row.cells.len(), "{text:?}");
+        }
+    }
+}
+
+#[test]
 fn damaged_files_are_read_or_refused() {
     let matrix =
         "# width_mm = 3\n# height_mm = 2\n# rows = top\n# unit = lx\n1;2;3,5\n4;;6\n7;8;nan\n";

@@ -15,7 +15,7 @@ pub(crate) struct Shares {
 }
 
 impl Shares {
-    /// About `about` paths, a power of two: where they suffice for at least half of the strata, the same power of two in each
+    /// About `about` paths, which is a power of two: where they suffice for more than half of the strata, the same power of two in each
     /// stratum, and together at least `about`. Twice `about` then gives twice the paths, or with fewer paths than strata
     /// two to four times as many.
     pub(crate) fn of(strata: u64, about: u64) -> Self {

@@ -13,7 +13,7 @@ mod shares;
 pub(crate) use points::Points;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-pub(crate) use shares::Shares;
+pub(crate) use shares::StratumShares;
 
 /// The streams of a run: no two purposes share one under a seed. The lower 32 bits number sensors, where each has a
 /// stream of its own. Samples of a study and the baselines of `compare` never meet in a run.

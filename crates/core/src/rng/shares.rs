@@ -8,13 +8,13 @@ use crate::rng::{Dimension, Numbers, Sampler};
 
 /// Strata of the paths of a batch.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Shares {
+pub(crate) struct StratumShares {
     strata: u64,
     /// Paths of the batch: a multiple of the strata, or fewer.
     pub(crate) paths: u64,
 }
 
-impl Shares {
+impl StratumShares {
     /// About `about` paths, which is a power of two: where they suffice for more than half of the strata, the same power of two in each
     /// stratum, and together at least `about`. Twice `about` then gives twice the paths, or with fewer paths than strata
     /// two to four times as many.
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     /// Paths of each stratum in a batch.
-    fn counts(batch: u64, shares: Shares) -> Vec<u64> {
+    fn counts(batch: u64, shares: StratumShares) -> Vec<u64> {
         let mut counts = vec![0; shares.strata as usize];
         for place in 0..shares.paths {
             counts[shares.stratum(place, &mut Sampler::for_path(batch, 2, place))] += 1;
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn every_stratum_has_its_share_of_the_paths_of_every_batch() {
         for [strata, about] in [[1, 64], [7, 7], [20, 320], [20, 64], [856, 3424], [856, 5000]] {
-            let shares = Shares::of(strata, about);
+            let shares = StratumShares::of(strata, about);
             let own = shares.paths / strata;
             assert!(own.is_power_of_two());
             assert!(counts(0, shares).iter().all(|count| *count == own), "{shares:?}");
@@ -65,7 +65,7 @@ mod tests {
     fn a_stratum_has_its_exact_share_of_few_paths_as_a_mean_over_batches() {
         for [strata, about] in [[17, 8], [16, 4], [9, 4]] {
             const BATCHES: u64 = 4000;
-            let shares = Shares::of(strata, about);
+            let shares = StratumShares::of(strata, about);
             assert_eq!(shares.paths, about);
             let mut sums = vec![0; strata as usize];
             for batch in 0..BATCHES {
@@ -84,7 +84,8 @@ mod tests {
     fn more_paths_are_a_multiple_of_a_few() {
         for strata in [1, 2, 20, 856, 5000] {
             for about in [64, 256, 1024, 4096] {
-                let [few, more] = [about, 8 * about].map(|about| Shares::of(strata, about).paths);
+                let [few, more] =
+                    [about, 8 * about].map(|about| StratumShares::of(strata, about).paths);
                 assert!((about..=2 * about).contains(&few), "{strata} {about}: {few}");
                 assert!((8 * few..16 * few).contains(&more), "{strata} {about}: {few}, {more}");
             }

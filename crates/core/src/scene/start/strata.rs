@@ -15,14 +15,14 @@ use std::f64::consts::PI;
 /// The strata of the starts on a sensor.
 #[derive(Debug)]
 pub struct Strata<'s> {
-    division: Division<'s>,
+    division: SensorDivision<'s>,
     /// Views or pixels of every part, if the sensor has any.
     views: Option<usize>,
 }
 
 /// How a sensor is divided.
 #[derive(Debug)]
-enum Division<'s> {
+enum SensorDivision<'s> {
     /// Not at all.
     Whole,
     /// Every part is a rectangle of the numbers from which points of the surface are made.
@@ -66,16 +66,16 @@ impl<'s> Strata<'s> {
             Seeing::Views(views) => Some(views.directions.len()),
             Seeing::Pixels(pixels) => Some(pixels.count()),
         };
-        let all = Self { division: division.unwrap_or(Division::Whole), views };
+        let all = Self { division: division.unwrap_or(SensorDivision::Whole), views };
         match all.parts() {
-            0 => Self { division: Division::Whole, views },
+            0 => Self { division: SensorDivision::Whole, views },
             _ => all,
         }
     }
 
     /// The strata of a goniometer.
     pub(super) fn of_sphere(goniometer: &Goniometer) -> Self {
-        Self { division: Division::Directions(goniometer.cells()), views: None }
+        Self { division: SensorDivision::Directions(goniometer.cells()), views: None }
     }
 
     /// Their number, at least 1.
@@ -86,10 +86,10 @@ impl<'s> Strata<'s> {
     /// Parts into which the surface is divided, or cells of a goniometer.
     fn parts(&self) -> usize {
         match &self.division {
-            Division::Whole => 1,
-            Division::Numbers(all) => all.len(),
-            Division::Plane(_, _, all) => all.len(),
-            Division::Directions(cells) => *cells,
+            SensorDivision::Whole => 1,
+            SensorDivision::Numbers(all) => all.len(),
+            SensorDivision::Plane(_, _, all) => all.len(),
+            SensorDivision::Directions(cells) => *cells,
         }
     }
 
@@ -108,12 +108,12 @@ impl<'s> Strata<'s> {
     ) -> Option<(AreaPoint, f64)> {
         let parts = self.parts();
         let (at, area) = match &self.division {
-            Division::Whole | Division::Directions(_) => (area.sample(u)?, area.area()),
-            Division::Numbers(all) => {
+            SensorDivision::Whole | SensorDivision::Directions(_) => (area.sample(u)?, area.area()),
+            SensorDivision::Numbers(all) => {
                 let rect = &all[stratum % parts];
                 (area.sample(numbers_within(rect, u))?, area.area() * rect.area())
             }
-            Division::Plane(flat, prim, all) => {
+            SensorDivision::Plane(flat, prim, all) => {
                 let own = &all[stratum % parts];
                 let uv = own.draw(flat.region(), u)?;
                 let point = flat.frame().point_to_world(uv.extend(0.0));
@@ -196,9 +196,9 @@ fn divide<'s>(
     sensor: &SurfaceSensor,
     patch: &'s Patch,
     prim: Option<PrimId>,
-) -> Option<Division<'s>> {
+) -> Option<SensorDivision<'s>> {
     let cells = in_z_order(sensor.grid.shape()).into_iter();
-    let numbers = |all: Vec<ChartRect>| Some(Division::Numbers(all));
+    let numbers = |all: Vec<ChartRect>| Some(SensorDivision::Numbers(all));
     match (&sensor.grid, NumbersOfChart::new(patch)) {
         (Grid::Cartesian { .. }, Some(chart)) => {
             let unit = ChartRect { min: DVec2::ZERO, max: DVec2::ONE };
@@ -213,7 +213,7 @@ fn divide<'s>(
         (Grid::Cartesian { .. }, region) => {
             let of_cell =
                 |cell| PlaneCell::new(region, sensor.grid.cell_rect(cell), sensor.covered[cell]);
-            Some(Division::Plane(flat, prim, cells.filter_map(of_cell).collect()))
+            Some(SensorDivision::Plane(flat, prim, cells.filter_map(of_cell).collect()))
         }
         (Grid::Polar { radius, rings, sectors }, Region::Annulus { inner, outer }) => {
             let share = |r: f64| {

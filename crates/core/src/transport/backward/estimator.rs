@@ -7,7 +7,7 @@
 //! sensors, and all count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::{Points, Sampler, Shares, stream};
+use crate::rng::{Points, Sampler, StratumShares, stream};
 use crate::scene::SensorId;
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::backward::paths::{Backward, Weights};
@@ -68,7 +68,7 @@ impl<'s> Backward<'s> {
     fn trace_path(
         &self,
         (sensor, points): (usize, &mut Points),
-        (place, shares): (u64, Shares),
+        (place, shares): (u64, StratumShares),
         (task, joints): (Task<'_>, &mut Sampler),
         readings: &mut Readings,
     ) {

@@ -2,7 +2,7 @@
 //!
 //! This module traces nothing.
 
-use crate::rng::{Points, Shares};
+use crate::rng::{Points, StratumShares};
 use crate::scene::{Arrivals, Scene, SensorId, Strata};
 use crate::transport::Layout;
 use crate::transport::connect::passage::RecordPlaces;
@@ -120,8 +120,8 @@ impl<'s> Backward<'s> {
     }
 
     /// The gather paths of a batch from a sensor, by its place among the sensors.
-    pub(crate) fn shares(&self, sensor: usize) -> Shares {
-        Shares::of(self.strata.get(sensor).map_or(1, Strata::count) as u64, self.paths)
+    pub(crate) fn shares(&self, sensor: usize) -> StratumShares {
+        StratumShares::of(self.strata.get(sensor).map_or(1, Strata::count) as u64, self.paths)
     }
 
     /// The etendue of a gather path joined to a source at a turn over that of one that meets its

@@ -25,6 +25,8 @@ pub(crate) struct Evidence<'a> {
     pub(crate) readings: &'a Readings,
     /// The readings for all that only photons can measure.
     photons: &'a Readings,
+    /// Number of paths that could find the light.
+    paths: u64,
     pub(crate) layout: Layout,
     estimator: Estimator,
 }
@@ -33,22 +35,23 @@ impl<'a> Evidence<'a> {
     /// Photons give all values.
     pub(crate) fn new(scene: &'a Scene, photons: &'a Readings) -> Self {
         let (layout, estimator) = (Layout::new(scene), Estimator::Forward);
-        Self { scene, readings: photons, photons, layout, estimator }
+        Self { scene, readings: photons, photons, paths: photons.paths(), layout, estimator }
     }
 
-    /// Other readings give a sensor's light.
-    pub(crate) fn by(self, readings: &'a Readings, estimator: Estimator) -> Self {
-        Self { readings, estimator, ..self }
+    /// Other readings give the light of a sensor.
+    pub(crate) fn by(self, readings: &'a Readings, (estimator, id): (Estimator, SensorId)) -> Self {
+        Self { readings, estimator, paths: readings.paths_for(id), ..self }
     }
 
     /// The evidence of photons alone.
     pub(crate) fn of_photons(&self) -> Self {
-        Self { readings: self.photons, estimator: Estimator::Forward, ..*self }
+        let (readings, paths) = (self.photons, self.photons.paths());
+        Self { readings, paths, estimator: Estimator::Forward, ..*self }
     }
 
     /// Mean flux of one path, lm or W.
     pub(crate) fn path_flux(&self) -> f64 {
-        self.scene.source_flux() / self.readings.paths() as f64
+        self.scene.source_flux() / self.paths as f64
     }
 
     /// A measure from these readings.
@@ -66,7 +69,7 @@ impl<'a> Evidence<'a> {
             bias: None,
             unit: unit.to_owned(),
             batches: self.readings.batch_count(),
-            paths: self.readings.paths(),
+            paths: self.paths,
             estimator: self.estimator,
             status,
         }

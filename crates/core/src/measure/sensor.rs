@@ -29,12 +29,12 @@ pub(crate) struct SensorMeasures {
 pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> SensorMeasures {
     let photons = Evidence::new(scene, &findings.photons);
     let estimate = findings.estimate(scene, id);
-    let mut found = by_evidence(&photons.by(estimate.readings, estimate.estimator), id);
+    let mut found = by_evidence(&photons.by(estimate.readings, (estimate.estimator, id)), id);
     let Some(bias) = estimate.bias else {
         found.values.values_mut().for_each(|measure| judge(measure, &estimate));
         return found;
     };
-    let other = by_evidence(&photons.by(bias.other, estimate.estimator), id);
+    let other = by_evidence(&photons.by(bias.other, (estimate.estimator, id)), id);
     for (name, measure) in &mut found.values {
         set_bias(measure, &estimate, &bias, &other.values[name]);
     }
@@ -59,7 +59,7 @@ pub(crate) fn value_of(
 ) -> Option<Measure> {
     let photons = Evidence::new(scene, &findings.photons);
     let estimate = findings.estimate(scene, id);
-    let of = |readings| one_value(&photons.by(readings, estimate.estimator), id, name);
+    let of = |readings| one_value(&photons.by(readings, (estimate.estimator, id)), id, name);
     let mut value = of(estimate.readings)?;
     match &estimate.bias {
         None => judge(&mut value, &estimate),
@@ -75,7 +75,11 @@ pub(crate) fn cell_fluxes(scene: &Scene, findings: &Findings, id: SensorId) -> V
     let photons = Evidence::new(scene, &findings.photons);
     let estimate = findings.estimate(scene, id);
     let cells = scene.sensors[id.index()].cells();
-    photons.by(estimate.readings, estimate.estimator).cell_flux(id, LightSelection::All, 0..cells)
+    photons.by(estimate.readings, (estimate.estimator, id)).cell_flux(
+        id,
+        LightSelection::All,
+        0..cells,
+    )
 }
 
 /// Values, in single groups of batches, of a measure that follows from scalars alone.
@@ -87,11 +91,11 @@ pub(crate) fn replicates(
 ) -> Option<Replicates> {
     let photons = Evidence::new(scene, &findings.photons);
     let Estimate { estimator, readings, .. } = findings.estimate(scene, id);
-    let value = total(&photons.by(readings, estimator), id, name)?.value;
+    let value = total(&photons.by(readings, (estimator, id)), id, name)?.value;
     let without = readings.groups.iter().map(|group| {
         let [own, photons] =
             [readings, &findings.photons].map(|readings| readings.without_group(group.group));
-        let evidence = Evidence::new(scene, &photons).by(&own, estimator);
+        let evidence = Evidence::new(scene, &photons).by(&own, (estimator, id));
         Some((group.group, total(&evidence, id, name)?.value))
     });
     Some(Replicates::new(value, &without.collect::<Option<Vec<_>>>()?))

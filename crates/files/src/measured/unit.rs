@@ -1,6 +1,6 @@
 //! Units of measured values, in the names of columns.
 
-/// Ends of the names of columns that are more or other than a word after `_`, and the units that they stand for.
+/// Endings of column names that are not a unit as written after `_`, and the units they stand for.
 const ENDS: [(&str, &str); 4] =
     [("_cd_m2", "cd/m²"), ("_w_m2_sr", "W/(m² sr)"), ("_w_m2", "W/m²"), ("_w_sr", "W/sr")];
 

@@ -1,8 +1,8 @@
 //! The cells of a sensor as strata for the starts of gather paths.
 //!
 //! Strata are drawn equally often, whatever their size, so that the cells at a rim are as well known as others. Where the
-//! cells of a surface cannot be drawn from one by one, because it has several pieces or its chart stretches it, the whole is
-//! the only stratum. This module does not know paths.
+//! cells of a surface cannot be drawn from one by one, because it has several pieces or its chart stretches it, or where there
+//! are too many, the whole is the only stratum. This module does not know paths.
 
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::start::area::{AreaPoint, FaceArea};
@@ -11,6 +11,9 @@ use crate::scene::{Goniometer, Grid, Patch, PrimId, Seeing, SurfaceSensor};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{bracketed_root, uniform_sphere};
 use std::f64::consts::PI;
+
+/// Most strata of a sensor: batches have fewer paths than this, so that more would bring nothing.
+const MOST_STRATA: usize = 1 << 17;
 
 /// The strata of the starts on a sensor.
 #[derive(Debug)]
@@ -58,7 +61,9 @@ impl<'s> Strata<'s> {
     /// The strata of a surface sensor with this area.
     pub(super) fn of_surface(sensor: &SurfaceSensor, area: &FaceArea<'s>) -> Self {
         let division = match area.only_patch() {
-            Some((patch, prim)) if sensor.grid.cells() > 1 => divide(sensor, patch, prim),
+            Some((patch, prim)) if (2..=MOST_STRATA).contains(&sensor.grid.cells()) => {
+                divide(sensor, patch, prim)
+            }
             Some(_) | None => None,
         };
         let views = match &sensor.seeing {
@@ -188,7 +193,7 @@ pub(super) fn in_z_order((columns, rows): (usize, usize)) -> Vec<usize> {
         (0..32).fold(0u64, |code, bit| code | (number as u64 >> bit & 1) << (2 * bit))
     };
     let mut cells: Vec<usize> = (0..columns * rows).collect();
-    cells.sort_by_key(|cell| spread(cell % columns) | spread(cell / columns) << 1);
+    cells.sort_by_cached_key(|cell| spread(cell % columns) | spread(cell / columns) << 1);
     cells
 }
 

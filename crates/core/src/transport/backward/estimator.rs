@@ -49,6 +49,7 @@ impl<'s> Backward<'s> {
         for (sensor, (id, _)) in self.sensors.iter().enumerate() {
             let of_sensor = stream::BACKWARD_POINTS + id.index() as u64;
             let shares = self.shares(sensor);
+            readings.sensors[id.index()].paths = shares.paths;
             let mut points = Points::of_batch((self.seed, of_sensor, batch), shares.paths);
             for place in 0..shares.paths {
                 if pace.spend(1).is_break() {

@@ -21,7 +21,7 @@ pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
 /// Format of the serialised readings.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// Sums over the batches of one group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,7 +91,7 @@ impl Readings {
             sensors: scene
                 .sensors
                 .iter()
-                .map(|sensor| SensorReading::new(scene, sensor.cells()))
+                .map(|sensor| SensorReading::new(scene, (sensor.cells(), batch_paths)))
                 .collect(),
             segments: 0,
             joins: 0,
@@ -125,6 +125,11 @@ impl Readings {
     /// Number of paths.
     pub fn paths(&self) -> u64 {
         self.batch_count() * self.batch_paths
+    }
+
+    /// Number of paths that could bring light to a sensor; of all paths where the readings have no cells.
+    pub(crate) fn paths_for(&self, id: SensorId) -> u64 {
+        self.sensors.get(id.index()).map_or_else(|| self.paths(), |own| own.paths)
     }
 
     /// Ends a batch: squares are computed.

@@ -39,6 +39,8 @@ pub struct ClassSum {
 /// Counts of one sensor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SensorReading {
+    /// Paths that could bring it light.
+    pub paths: u64,
     /// Flux per cell, lm or W.
     pub cells: Cells,
     /// The part of it from each light group.
@@ -77,9 +79,10 @@ fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, light: &Detecte
 }
 
 impl SensorReading {
-    /// Nothing counted yet on a sensor of a scene with this many cells.
-    pub(crate) fn new(scene: &Scene, cells: usize) -> Self {
+    /// Nothing counted yet on a sensor of a scene with this many cells, by a batch of this many paths.
+    pub(crate) fn new(scene: &Scene, (cells, paths): (usize, u64)) -> Self {
         Self {
+            paths,
             cells: Cells::new(cells),
             groups: scene.light.ids().map(|_| Cells::new(cells)).collect(),
             stimuli: scene.is_spectral().then(|| CellStimuli::new(cells)),
@@ -105,6 +108,7 @@ impl SensorReading {
 
     /// Adds the counts of the batches that follow.
     pub(crate) fn merge(&mut self, later: &Self) {
+        self.paths += later.paths;
         self.each(later, Cells::merge);
         self.stimuli.iter_mut().zip(&later.stimuli).for_each(|(own, later)| own.merge(later));
         merge_classes(&mut self.classes, &later.classes);

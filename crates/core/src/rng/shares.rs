@@ -6,11 +6,20 @@
 
 use crate::rng::{Dimension, Numbers, Sampler};
 
+/// Most paths in a stratum of a trial of some strata: what more would gain follows from fewer.
+const TRIED_EACH: u64 = 8;
+/// Least strata in a batch of a trial, if there are as many.
+const LEAST_TRIED: u64 = 4;
+
 /// Strata of the paths of a batch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StratumShares {
     strata: u64,
-    /// Paths of the batch: a multiple of the strata, or fewer.
+    /// Strata in which the batch has paths, at equal distances: all of them, except in a trial.
+    tried: u64,
+    /// Which ones those are, 0 to 1.
+    turn: f64,
+    /// Paths of the batch: a multiple of the strata that are tried, or fewer than there are.
     pub(crate) paths: u64,
 }
 
@@ -22,16 +31,48 @@ impl StratumShares {
         let is_few = strata < 2 || 2 * about <= strata;
         let paths =
             if is_few { about } else { strata * about.div_ceil(strata).next_power_of_two() };
-        Self { strata, paths }
+        Self { strata, tried: strata, turn: 0.0, paths }
+    }
+
+    /// About `about` paths instead, for a trial: in some of the strata with as many paths in each, or with fewer as a step towards
+    /// as many.
+    pub(crate) fn for_trial(self, about: u64) -> Self {
+        if self.strata < 2 || self.paths < self.strata || self.paths <= about {
+            return Self::of(self.strata, about);
+        }
+        let most = TRIED_EACH.min(about / LEAST_TRIED).max(about / self.strata).max(1);
+        let each = self.each().min(1 << most.ilog2());
+        let tried = (about / each).clamp(1, self.strata);
+        Self { tried, paths: each * tried, ..self }
+    }
+
+    /// Share of the strata in which the batch has paths, 1.
+    pub(crate) fn share(&self) -> f64 {
+        self.tried as f64 / self.strata as f64
+    }
+
+    /// The same in other strata, if it has not paths in all, evenly over all of them for a uniform `turn`.
+    pub(crate) fn turned(self, turn: f64) -> Self {
+        Self { turn, ..self }
+    }
+
+    /// Paths in a stratum; 0 where there are fewer paths than strata.
+    pub(crate) fn each(&self) -> u64 {
+        self.paths / self.tried
     }
 
     /// The stratum of a path by its place in the batch. Where there are fewer paths than strata, each path draws one out of
     /// its own range: strata at equal distances would often be a single column of a map.
     #[inline]
     pub(crate) fn stratum(&self, place: u64, sampler: &mut Sampler<impl Numbers>) -> usize {
-        let Self { strata, paths } = *self;
-        if paths >= strata {
-            return (place / (paths / strata)) as usize;
+        let Self { strata, tried, turn, paths } = *self;
+        if paths >= tried {
+            let place = place / self.each();
+            if tried == strata {
+                return place as usize;
+            }
+            let distance = strata as f64 / tried as f64;
+            return (((place as f64 + turn) * distance) as usize).min(strata as usize - 1);
         }
         let share = (place as f64 + sampler.one(Dimension::GatherCell)) / paths as f64;
         ((share * strata as f64) as usize).min(strata as usize - 1)
@@ -78,6 +119,31 @@ mod tests {
                 assert!((found - share).abs() < 4.0 * 0.5 / (BATCHES as f64).sqrt(), "{found}");
             }
         }
+    }
+
+    #[test]
+    fn a_trial_has_paths_in_some_strata_as_a_run_has_in_all() {
+        let run = StratumShares::of(856, 20_000);
+        let trial = run.for_trial(500);
+        assert_eq!((run.each(), trial.each(), trial.tried), (32, 8, 62));
+        assert_eq!(StratumShares::of(856, 1000).for_trial(500).each(), 2, "as a run");
+        assert_eq!(StratumShares::of(856, 20_000).for_trial(16).each(), 4, "in four strata");
+        assert_eq!(StratumShares::of(20, 1280).for_trial(500).each(), 16, "in all strata");
+        for (strata, of_run, about) in [(2, 4096, 64), (856, 100, 64), (1, 4096, 64)] {
+            let trial = StratumShares::of(strata, of_run).for_trial(about);
+            assert_eq!(trial.tried, strata, "all strata");
+        }
+        let mut found = vec![0; 856];
+        const TURNS: u64 = 856;
+        for turn in 0..TURNS {
+            let turned = trial.turned((turn as f64 + 0.5) / TURNS as f64);
+            let place = |place| turned.stratum(place, &mut Sampler::for_path(1, 2, place));
+            (0..trial.paths).for_each(|path| found[place(path)] += 1);
+        }
+        assert!(
+            found.iter().all(|count| *count == trial.paths),
+            "evenly over all turns: {found:?}"
+        );
     }
 
     #[test]

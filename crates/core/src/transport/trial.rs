@@ -1,10 +1,13 @@
 //! Trials of estimators before a run: what each costs, measured on every sensor with the same
 //! effort. This module does not draw conclusions.
 
+pub(crate) mod strata;
+
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId, SourceId};
 use crate::tally::Tally;
 use crate::transport::stop::StopSignal;
+use crate::transport::trial::strata::{PAIR, TriedStrata};
 use crate::transport::{Cells, Layout, Readings};
 use serde::{Deserialize, Serialize};
 
@@ -121,6 +124,14 @@ pub(crate) struct TriedBatches {
     pub(crate) work: f64,
     /// The same if a sensor were alone.
     pub(crate) work_of_one: f64,
+    /// Of each sensor, the strata that were tried; none where nothing is divided.
+    pub(crate) strata: Vec<Option<TriedStrata>>,
+}
+
+impl TriedBatches {
+    fn strata_of(&self, sensor: usize) -> Option<&TriedStrata> {
+        self.strata.get(sensor)?.as_ref()
+    }
 }
 
 impl Trials<'_> {
@@ -136,13 +147,29 @@ impl Trials<'_> {
         let expected = SMALL * self.effort;
         let small = trace(expected)?;
         let large = trace(self.effort * expected / small.work)?;
-        let judged =
-            |tried: &TriedBatches| self.judged(&tried.batches, tried.work_of_one, estimator);
-        let [growth, to_run] =
-            [large.work / small.work, BATCHES as f64 * self.batch_work / large.work];
-        let of_sensor = |((mut tried, smaller), sensor): ((Tried, Tried), &SensorId)| {
-            let lit =
-                small.batches.iter().filter(|batch| is_lit(self.scene, batch, *sensor)).count();
+        let judged = |tried: &TriedBatches| {
+            let mut all = self.judged(&tried.batches, tried.work_of_one, estimator);
+            for ((own, sensor), strata) in all.iter_mut().zip(self.sensors).zip(&tried.strata) {
+                let Some(strata) = strata else { continue };
+                own.trial.cost = strata.cost(&tried.batches, *sensor, tried.work_of_one);
+                // Only the fluxes of different strata are independent.
+                let of = (*sensor, PAIR);
+                own.flux = flux_of(self.scene, &tried.batches, of, sources(self.scene));
+                own.by_source = by_source(self.scene, &tried.batches, of);
+            }
+            all
+        };
+        // By how much larger batches, or paths in a stratum, are, and by how much those of the run.
+        let sizes = |place: usize| match [&large, &small].map(|tried| tried.strata_of(place)) {
+            [Some(own), Some(few)] => {
+                [own.each as f64 / few.each as f64, own.each_of_run as f64 / own.each as f64]
+            }
+            _ => [large.work / small.work, BATCHES as f64 * self.batch_work / large.work],
+        };
+        let of_sensor = |((mut tried, smaller), place): ((Tried, Tried), usize)| {
+            let [growth, to_run] = sizes(place);
+            let lit = |batch: &&Readings| is_lit(self.scene, batch, self.sensors[place]);
+            let lit = small.batches.iter().filter(lit).count();
             if let (Some(own), Some(smaller)) = (&mut tried.trial.cost, smaller.trial.cost)
                 && lit >= LIT_BATCHES
             {
@@ -151,7 +178,7 @@ impl Trials<'_> {
             tried
         };
         let both = judged(&large).into_iter().zip(judged(&small));
-        Some(both.zip(self.sensors).map(of_sensor).collect())
+        Some(both.zip(0..).map(of_sensor).collect())
     }
 
     /// Performance of an estimator on each sensor with this much work.
@@ -166,9 +193,7 @@ impl Trials<'_> {
             let variance = relative_variance(self.scene, batches, &merged, sensor);
             let cost = variance.map(|variance| 1e-9 * work * variance);
             let trial = Trial { estimator, cost, bias: None, least: 0.0, objection: None };
-            let by_source = sources(self.scene)
-                .map(|source| flux_of(self.scene, batches, sensor, std::iter::once(source)));
-            let by_source = by_source.collect();
+            let by_source = by_source(self.scene, batches, (sensor, 1));
             Tried { trial, flux: flux(self.scene, batches, sensor), by_source, bias: None }
         };
         self.sensors.iter().map(of_sensor).collect()
@@ -225,21 +250,29 @@ fn variance_over_cells(cells: &Cells, batches: u64) -> Option<f64> {
 
 /// The flux of a sensor, batch by batch.
 pub(crate) fn flux(scene: &Scene, batches: &[Readings], sensor: SensorId) -> Tally {
-    flux_of(scene, batches, sensor, sources(scene))
+    flux_of(scene, batches, (sensor, 1), sources(scene))
 }
 
-/// The flux of some sources.
+/// The flux of a sensor from each source, by this many batches at a time.
+fn by_source(scene: &Scene, batches: &[Readings], of: (SensorId, usize)) -> Vec<Tally> {
+    let one = |source| flux_of(scene, batches, of, std::iter::once(source));
+    sources(scene).map(one).collect()
+}
+
+/// The flux of some sources, by this many batches at a time.
 fn flux_of(
     scene: &Scene,
     batches: &[Readings],
-    sensor: SensorId,
+    (sensor, together): (SensorId, usize),
     sources: impl Iterator<Item = SourceId> + Clone,
 ) -> Tally {
     let layout = Layout::new(scene);
-    Tally::of(batches.iter().map(|batch| {
+    let flux = |batch: &Readings| -> f64 {
         let sums = &batch.groups[0].sums;
         sources.clone().map(|source| sums[layout.sensor_flux(sensor, source)]).sum()
-    }))
+    };
+    let mean = |some: &[Readings]| some.iter().map(flux).sum::<f64>() / some.len() as f64;
+    Tally::of(batches.chunks_exact(together).map(mean))
 }
 
 fn sources(scene: &Scene) -> impl Iterator<Item = SourceId> + Clone + use<> {

@@ -7,7 +7,7 @@
 //! sensors, and all count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::{Points, Sampler, StratumShares, stream};
+use crate::rng::{Dimension, Points, Sampler, StratumShares, stream};
 use crate::scene::SensorId;
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::backward::paths::{Backward, Weights};
@@ -17,6 +17,7 @@ use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::MIN_LIT_GROUPS;
 use crate::transport::tally::work;
 use crate::transport::task::Task;
+use crate::transport::trial::strata::PAIR;
 use crate::transport::trial::{BATCHES, SEED, Trials, Tried, TriedBatches};
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Layout, Path, Readings};
@@ -48,7 +49,9 @@ impl<'s> Backward<'s> {
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, batch);
         for (sensor, (id, _)) in self.sensors.iter().enumerate() {
             let of_sensor = stream::BACKWARD_POINTS + id.index() as u64;
-            let shares = self.shares(sensor);
+            // Two batches take the same strata, if they do not take all.
+            let mut pair = Sampler::for_path(self.seed, of_sensor, batch / PAIR as u64);
+            let shares = self.shares(sensor).turned(pair.one(Dimension::GatherCell));
             readings.sensors[id.index()].paths = shares.paths;
             let mut points = Points::of_batch((self.seed, of_sensor, batch), shares.paths);
             for place in 0..shares.paths {
@@ -115,14 +118,15 @@ impl<'s> Backward<'s> {
     }
 }
 
-/// Gather paths of some sensors with this much work in total, divided into batches.
+/// Gather paths of some sensors with this much work in total, divided into batches, as a trial of those of the run.
 pub(crate) fn paths_for<'a>(trials: &Trials<'a>, effort: f64) -> Option<Backward<'a>> {
     let Trials { scene, plan, sensors, signal, .. } = *trials;
     let RunPlan { seed, bounce_limit, .. } = plan;
     let backward = Backward::new(scene, sensors, seed ^ SEED, *bounce_limit);
     let work = backward.work_of_path(signal)?;
-    let paths = effort / BATCHES as f64 / sensors.len() as f64 / work;
-    Some(backward.with_paths(paths as u64))
+    let of_sensor = |effort: f64| (effort / sensors.len() as f64 / work) as u64;
+    let of_run = of_sensor(trials.batch_work);
+    Some(backward.with_paths(of_sensor(effort / BATCHES as f64)).trying(of_run))
 }
 
 /// Batches of a trial after `by_photons` ns of work by photons. A sensor that is alone takes its share of the gather paths.
@@ -134,7 +138,8 @@ pub(crate) fn tried_batches(
     let of_batch = |batch: &Readings| work::of_gather_paths(backward.batch_paths(), batch);
     let by_paths: f64 = batches.iter().map(of_batch).sum();
     let work_of_one = by_photons + by_paths / backward.sensors.len() as f64;
-    TriedBatches { batches, work: by_photons + by_paths, work_of_one }
+    let strata = (0..backward.sensors.len()).map(|sensor| backward.tried_strata(sensor)).collect();
+    TriedBatches { batches, work: by_photons + by_paths, work_of_one, strata }
 }
 
 /// Tries gather paths that meet the sources; `None` if stopped.

@@ -10,6 +10,7 @@ use crate::transport::connect::sensors::SensorTargets;
 use crate::transport::connect::sources::{SourcePoint, SourceTargets};
 use crate::transport::connect::vertex::TurnAt;
 use crate::transport::connect::weights::Sharing;
+use crate::transport::trial::strata::TriedStrata;
 use crate::transport::walk::emitters::Emitters;
 
 /// Gather paths of a batch from each sensor where no number is given: they measure their work.
@@ -32,6 +33,8 @@ pub(crate) struct Backward<'s> {
     pub(crate) bounce_limit: u32,
     /// Gather paths per batch of each sensor, before they are divided evenly among its cells.
     pub(crate) paths: u64,
+    /// The same of a batch of the run, in a trial.
+    of_run: Option<u64>,
     pub(crate) weights: Weights,
     /// How all techniques that find a path divide its light.
     pub(crate) sharing: Sharing,
@@ -82,6 +85,7 @@ impl<'s> Backward<'s> {
             seed,
             bounce_limit,
             paths: PILOT_PATHS,
+            of_run: None,
             weights: Weights::Full,
             sharing: Sharing::default(),
         }
@@ -104,6 +108,11 @@ impl<'s> Backward<'s> {
         Self { strata, ..self }
     }
 
+    /// The same as a trial of batches with this many paths from each sensor: in some of its cells, if they are many.
+    pub(crate) fn trying(self, paths: u64) -> Self {
+        Self { of_run: Some(paths), ..self }
+    }
+
     /// The same with other weights.
     pub(crate) fn with_weights(self, weights: Weights) -> Self {
         Self { weights, ..self }
@@ -121,7 +130,20 @@ impl<'s> Backward<'s> {
 
     /// The gather paths of a batch from a sensor, by its place among the sensors.
     pub(crate) fn shares(&self, sensor: usize) -> StratumShares {
-        StratumShares::of(self.strata.get(sensor).map_or(1, Strata::count) as u64, self.paths)
+        let strata = self.strata.get(sensor).map_or(1, Strata::count) as u64;
+        match self.of_run {
+            None => StratumShares::of(strata, self.paths),
+            Some(of_run) => StratumShares::of(strata, of_run).for_trial(self.paths),
+        }
+    }
+
+    /// The strata of a sensor that a trial takes, by its place among the sensors; `None` if the run will not have paths in all.
+    pub(crate) fn tried_strata(&self, sensor: usize) -> Option<TriedStrata> {
+        let strata = self.strata.get(sensor)?.count() as u64;
+        let each_of_run = StratumShares::of(strata, self.of_run?).each();
+        let shares = self.shares(sensor);
+        let tried = TriedStrata { share: shares.share(), each: shares.each(), each_of_run };
+        (strata > 1 && each_of_run > 0).then_some(tried)
     }
 
     /// The etendue of a gather path joined to a source at a turn over that of one that meets its

@@ -8,7 +8,7 @@
 //! and its noise, or a flux that the best of the unbiased ones contradicts. Windows alone cannot
 //! see a feature that is smaller than all of them. An unbiased
 //! estimator is excluded if it found too little compared with another: its variance does not
-//! contain what it has missed so far.
+//! contain what it has missed so far. Sensors that want different estimators agree on a few.
 
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
@@ -37,8 +37,6 @@ const SIGMAS: f64 = 3.0;
 const SIGMAS_OF_MANY: f64 = 4.0;
 /// Possible relative rounding of a flux, 1.
 const ROUNDING: f64 = 1e-9;
-/// Time of an estimator that has half of the work of a run over that of one which has all of it, 1.
-const SHARED: f64 = 2.0;
 /// Relative bias allowed if there is no target, 1.
 const USUAL_TARGET: f64 = 0.01;
 
@@ -118,7 +116,7 @@ fn choices(
         let chosen = own.unwrap_or_else(|| best(&tried, error));
         Wanted { choice: EstimatorChoice { chosen, tried }, error, is_given: own.is_some() }
     };
-    Some(one_for_all(sensors.iter().map(of_sensor).collect()))
+    Some(in_common(sensors.iter().map(of_sensor).collect()))
 }
 
 /// The best for a sensor alone.
@@ -134,40 +132,49 @@ impl Wanted {
     /// Time with another estimator over that with the chosen one, 1; infinite if it is not permitted.
     fn longer(&self, estimator: Estimator) -> f64 {
         let Self { choice, error, is_given } = self;
-        let fit = choice.tried.iter().find(|own| own.estimator == estimator);
-        let fit = fit.filter(|own| own.objection.is_none());
-        match (is_given, fit) {
-            (true, _) => {
-                if choice.chosen == estimator {
-                    1.0
-                } else {
-                    f64::INFINITY
-                }
-            }
-            (false, None) => f64::INFINITY,
-            (false, Some(own)) => {
+        if choice.chosen == estimator {
+            return 1.0;
+        }
+        let mut fit = choice.tried.iter().filter(|own| own.objection.is_none());
+        match fit.find(|own| own.estimator == estimator) {
+            Some(own) if !is_given => {
                 let best = error.and_then(|error| Some((error, choice.time(error)?)));
                 // In the dark all are equal.
                 best.map_or(1.0, |(error, best)| {
                     own.time(error).map_or(f64::INFINITY, |time| time / best)
                 })
             }
+            Some(_) | None => f64::INFINITY,
         }
+    }
+
+    /// The best of some estimators, and its time over that of the chosen one, 1.
+    fn best_of(&self, some: &[Estimator]) -> (Estimator, f64) {
+        let times = some.iter().map(|one| (*one, self.longer(*one)));
+        times.min_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap_or((self.choice.chosen, 1.0))
     }
 }
 
-/// The choices. Estimators that differ share the work of the run: one for all is taken where no sensor loses more by it.
-fn one_for_all(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
-    let longest =
-        |estimator: Estimator| wanted.iter().map(|own| own.longer(estimator)).fold(1.0, f64::max);
-    let is_one = wanted.windows(2).all(|pair| pair[0].choice.chosen == pair[1].choice.chosen);
-    let all = Estimator::TRIED.into_iter().map(|estimator| (longest(estimator), estimator));
-    let common = all.min_by(|(a, _), (b, _)| a.total_cmp(b)).filter(|(time, _)| *time < SHARED);
-    let common = common.filter(|_| !is_one).map(|(_, estimator)| estimator);
-    let choice = |Wanted { choice, .. }: Wanted| EstimatorChoice {
-        chosen: common.unwrap_or(choice.chosen),
-        ..choice
+/// The choices. Estimators that differ share the work of the run: of all sets of them, that which delays the sensor that loses
+/// most the least, each with its equal share of the work.
+fn in_common(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
+    let mut all = Estimator::TRIED.to_vec();
+    for Wanted { choice, .. } in &wanted {
+        if !all.contains(&choice.chosen) {
+            all.push(choice.chosen);
+        }
+    }
+    let longest = |set: &[Estimator]| {
+        let longest = wanted.iter().map(|own| own.best_of(set).1).fold(1.0, f64::max);
+        set.len() as f64 * longest
     };
+    let sets = (1..1usize << all.len()).map(|members| {
+        let is_member =
+            |(place, one): (usize, &Estimator)| (members >> place & 1 == 1).then_some(*one);
+        all.iter().enumerate().filter_map(is_member).collect::<Vec<_>>()
+    });
+    let set = sets.min_by(|a, b| longest(a).total_cmp(&longest(b))).unwrap_or_default();
+    let choice = |own: Wanted| EstimatorChoice { chosen: own.best_of(&set).0, ..own.choice };
     wanted.into_iter().map(choice).collect()
 }
 
@@ -278,7 +285,7 @@ mod tests {
     /// What is chosen for a sensor that slightly prefers the mix, and another one.
     fn chosen_beside(other: Wanted) -> [Estimator; 2] {
         let all = vec![wanted([Some(1e-4), Some(9e-5)], Estimator::Mix), other];
-        let chosen: Vec<Estimator> = one_for_all(all).iter().map(|own| own.chosen).collect();
+        let chosen: Vec<Estimator> = in_common(all).iter().map(|own| own.chosen).collect();
         chosen.try_into().unwrap()
     }
 
@@ -289,8 +296,30 @@ mod tests {
         assert_eq!(chosen_beside(easy()), [forward; 2], "mix gains a tenth there");
         assert_eq!(chosen_beside(wanted([Some(5e-6), Some(1e-6)], mix)), [mix; 2]);
         let far = vec![wanted([Some(1e-4), Some(1e-5)], mix), easy()];
-        let chosen: Vec<Estimator> = one_for_all(far).iter().map(|own| own.chosen).collect();
+        let chosen: Vec<Estimator> = in_common(far).iter().map(|own| own.chosen).collect();
         assert_eq!(chosen, [mix, forward]);
+    }
+
+    #[test]
+    fn two_estimators_share_a_run_rather_than_three() {
+        let [forward, backward, mix] = [Estimator::Forward, Estimator::Backward, Estimator::Mix];
+        let sensor = |costs: [f64; 3], chosen| {
+            let all = [forward, backward, mix].into_iter().zip(costs);
+            let tried = all.map(|(estimator, cost)| trial(estimator, Some(cost)));
+            let choice = EstimatorChoice { chosen, tried: tried.collect() };
+            Wanted { choice, error: Some(0.01), is_given: false }
+        };
+        let map = sensor([5e-3, 5e-4, 7e-3], backward);
+        let wall = |by_mix| sensor([1e-6, 9e-5, by_mix], if by_mix < 1e-6 { mix } else { forward });
+        let far = sensor([1e-6, 1e-1, 5e-6], forward);
+        let chosen: Vec<Estimator> =
+            in_common(vec![map, wall(0.9e-6), far]).iter().map(|own| own.chosen).collect();
+        assert_eq!(chosen, [backward, forward, forward], "mix gains a tenth on the wall");
+        let [map, far] =
+            [sensor([5e-3, 5e-4, 7e-3], backward), sensor([1e-6, 1e-1, 5e-6], forward)];
+        let chosen: Vec<Estimator> =
+            in_common(vec![map, wall(0.1e-6), far]).iter().map(|own| own.chosen).collect();
+        assert_eq!(chosen, [backward, mix, forward], "each gains more than it loses");
     }
 
     #[test]

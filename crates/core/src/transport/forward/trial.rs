@@ -15,7 +15,7 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
         let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
         let batches = batches?;
         let work = batches.iter().map(work::of_photons).sum();
-        Some(TriedBatches { batches, work, work_of_one: work })
+        Some(TriedBatches { batches, work, work_of_one: work, strata: Vec::new() })
     })
 }
 

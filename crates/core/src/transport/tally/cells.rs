@@ -101,6 +101,14 @@ impl<S: Summed> CellSums<S> {
         self.densify();
     }
 
+    /// Shows the sums of lit cells.
+    pub(crate) fn each_lit(&self, act: impl FnMut(&S)) {
+        match self {
+            Self::Sparse(_, sums) => sums.values().for_each(act),
+            Self::Dense(sums) => sums.iter().filter(|sums| sums.is_lit()).for_each(act),
+        }
+    }
+
     fn each_mut(&mut self, act: impl FnMut(&mut S)) {
         match self {
             Self::Sparse(_, sums) => sums.values_mut().for_each(act),

@@ -13,6 +13,7 @@ mod junit;
 mod measured;
 mod merge;
 mod mesh;
+mod optimise;
 mod process;
 mod run;
 mod values;
@@ -27,6 +28,7 @@ use crate::cli::exit::finish;
 use crate::cli::film::FilmArgs;
 use crate::cli::merge::MergeArgs;
 use crate::cli::mesh::MeshArgs;
+use crate::cli::optimise::OptimiseArgs;
 use crate::cli::run::RunArgs;
 use clap::{CommandFactory, Parser, Subcommand};
 use lumiduct_base::error::Error;
@@ -53,6 +55,8 @@ enum Command {
     Run(RunArgs),
     /// Trace all designs of a study and write the results.
     Batch(BatchArgs),
+    /// Find sizes or pitches of a pattern that give the wanted light, and check them. Exits with 1 if the target is not reached.
+    Optimise(OptimiseArgs),
     /// Merge the parts of a run or a study that were computed with --shard.
     Merge(MergeArgs),
     /// Run several estimators and baselines for the same time and compare their errors against a reference value.
@@ -75,7 +79,7 @@ enum Command {
         #[arg(default_value = ".")]
         folder: PathBuf,
     },
-    /// Print the JSON Schema of scene, study or sensor files, for editors.
+    /// Print the JSON Schema of scene, study, optimisation or sensor files, for editors.
     Schema {
         /// The kind of file.
         #[arg(value_enum, default_value = "scene")]
@@ -95,6 +99,7 @@ enum Command {
 enum SchemaOf {
     Scene,
     Study,
+    Optimisation,
     Sensor,
 }
 
@@ -111,6 +116,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Merge(args) => merge::merge(&args),
         Command::Batch(args) => batch::batch(&args),
+        Command::Optimise(args) => optimise::optimise(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Diff(args) => diff::run(&args),
@@ -123,6 +129,7 @@ pub fn main() -> ExitCode {
             let schema = match of {
                 SchemaOf::Scene => input::editor_schema::scene_file_schema(),
                 SchemaOf::Study => input::schema::study_schema(),
+                SchemaOf::Optimisation => input::schema::optimisation_schema(),
                 SchemaOf::Sensor => input::editor_schema::sensor_file_schema(),
             };
             finish(Ok(format!("{schema:#}\n")))

@@ -58,6 +58,7 @@
 //! are part of the names there.
 
 pub mod cli;
+pub mod optimise;
 pub mod pipeline;
 pub mod study;
 

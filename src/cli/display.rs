@@ -1,6 +1,7 @@
 //! How runs and batches show their progress.
 
 use crate::cli::console::print_error;
+use crate::optimise::OptimisationProgress;
 use crate::pipeline::Progress;
 use crate::study::BatchProgress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -48,6 +49,11 @@ impl Display {
 
     /// Designs done, and the time left.
     pub(super) fn show_batch(&mut self, progress: &BatchProgress) {
+        self.show_line(progress.fraction, progress.elapsed, &progress.sentence());
+    }
+
+    /// The measurement at work, and the best so far.
+    pub(super) fn show_optimisation(&mut self, progress: &OptimisationProgress) {
         self.show_line(progress.fraction, progress.elapsed, &progress.sentence());
     }
 

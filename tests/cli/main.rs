@@ -9,6 +9,7 @@ mod compare;
 mod diffs;
 mod light;
 mod measured;
+mod optimisations;
 mod pages;
 mod parts;
 mod rays;

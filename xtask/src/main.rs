@@ -19,7 +19,7 @@ use std::process::{Command, ExitCode};
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask")]
 enum Chore {
-    /// Write the pages on scene and study files in docs from the schemas.
+    /// Write the pages on scene, study and optimisation files in docs from the schemas.
     Manual,
     /// Run all scenes and studies anew and compare their committed reports byte by byte.
     VerifyReports {

@@ -19,10 +19,15 @@ use lumiduct_input::validate::wording;
 
 const TEMPLATE: &str = include_str!("../templates/scene_format.md");
 const STUDY_TEMPLATE: &str = include_str!("../templates/study_format.md");
+const OPTIMISE_TEMPLATE: &str = include_str!("../templates/optimise.md");
 
 /// The pages of the manual by their files, from the root of the repository.
-pub(crate) fn pages() -> [(&'static str, String); 2] {
-    [("docs/scene_format.md", markdown()), ("docs/study_format.md", study_markdown())]
+pub(crate) fn pages() -> [(&'static str, String); 3] {
+    [
+        ("docs/scene_format.md", markdown()),
+        ("docs/study_format.md", study_markdown()),
+        ("docs/optimise.md", optimise_markdown()),
+    ]
 }
 
 /// The manual page of scenes as Markdown.
@@ -33,6 +38,11 @@ fn markdown() -> String {
 /// The manual page of studies as Markdown.
 fn study_markdown() -> String {
     STUDY_TEMPLATE.replace("{{reference}}", reference(&schema::study_schema()).trim_end())
+}
+
+/// The manual page of optimisations as Markdown.
+fn optimise_markdown() -> String {
+    OPTIMISE_TEMPLATE.replace("{{reference}}", reference(&schema::optimisation_schema()).trim_end())
 }
 
 /// All tables with their keys: first those at the top level of a file, then those that several
@@ -57,7 +67,9 @@ fn reference(schema: &Json) -> String {
 }
 
 /// Tables at the top of a file, and their headings.
-const FAMILIES: [(&str, &str); 16] = [
+const FAMILIES: [(&str, &str); 18] = [
+    ("Optimise", "optimise"),
+    ("OptimisationRun", "run of an optimisation"),
     ("Parameter", "parameters.NAME"),
     ("Plan", "plan"),
     ("StudyRun", "run of a study"),

@@ -26,6 +26,7 @@ pub(crate) fn verify(share: Share, program: Option<PathBuf>) -> io::Result<bool>
     };
     let mut jobs = jobs("scenes", "run", "reports")?;
     jobs.extend(self::jobs("scenes/studies", "batch", "reports/studies")?);
+    jobs.extend(self::jobs("scenes/optimisations", "optimise", "reports/optimisations")?);
     let (step, first) = match share {
         Share::All => (1, 0),
         Share::Tenth => (10, commits()? % 10),

@@ -1,5 +1,5 @@
 //! Reads and writes foreign file formats: triangle [`mesh`]es, as those of [`lumiduct_base`], the luminous
-//! intensities of [`luminaire`]s, the [`rays`] of light sources, the [`scatter`] of sheets, [`measured`] maps, and [`spectral`] tables. This crate
+//! intensities of [`luminaire`]s, the [`rays`] of light sources, the [`scatter`] of sheets, [`measured`] maps, [`spectral`] tables, and drawings for [`cutting`]. This crate
 //! knows no scenes.
 //!
 //! Readers never trust a file: whatever it contains, the result is data or an error, and what they assume is a remark. Each module has an
@@ -25,6 +25,7 @@
 //! ```
 
 mod bytes;
+pub mod cutting;
 pub mod luminaire;
 pub mod measured;
 pub mod mesh;

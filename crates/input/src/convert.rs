@@ -8,6 +8,7 @@ use serde_json::Value as Json;
 use crate::keys::{Key, KeySegment};
 use crate::own_library::LIBRARY;
 use crate::problems::Problems;
+use crate::spec::optimise::OptimisationSpec;
 use crate::spec::study::StudySpec;
 use crate::spec::{AIR, FORMAT_VERSION, NORTH, SceneSpec, UP};
 use crate::tree::{Node, Value};
@@ -42,6 +43,11 @@ pub(crate) fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
 
 /// The study of a tree; `None` if that fails, which has then been noted.
 pub(crate) fn study(root: &Node, problems: &mut Problems) -> Option<StudySpec> {
+    one(root, &Key::root(), problems)
+}
+
+/// The optimisation of a tree; `None` if that fails, which has then been noted.
+pub(crate) fn optimisation(root: &Node, problems: &mut Problems) -> Option<OptimisationSpec> {
     one(root, &Key::root(), problems)
 }
 

@@ -7,6 +7,7 @@ use crate::lower::Lowered;
 use crate::lower::context::Scope;
 use crate::problems::Problems;
 use crate::project::{Project, project};
+use crate::texts::SourceText;
 use crate::{Draft, draft};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Diagnostic, Error, Result};
@@ -77,6 +78,8 @@ pub struct Job {
     pub settings: Settings,
     /// Identifies scene file, included files, meshes and overrides: 64-bit FNV-1a, in hexadecimal.
     pub hash: String,
+    /// The same without the overrides: it changes only where a file does.
+    pub files_hash: String,
     /// Remarks on the scene.
     pub warnings: Vec<Diagnostic>,
 }
@@ -101,11 +104,16 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let Some(Lowered { scene, mut run, checks, meshes, exports }) = lowered else {
         return Err(Error::Input(warnings));
     };
-    let mut hash = Digest::default();
-    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
-    hash.add(meshes.to_string().as_bytes());
     let logo = project.as_ref().and_then(|project| project.logo.as_ref());
-    logo.into_iter().for_each(|png| hash.add(png));
+    let digest = |is_counted: fn(&SourceText) -> bool| {
+        let mut hash = Digest::default();
+        let sources = places.sources().iter().filter(|source| is_counted(source));
+        sources.for_each(|source| hash.add(source.text().as_bytes()));
+        hash.add(meshes.to_string().as_bytes());
+        logo.into_iter().for_each(|png| hash.add(png));
+        hash.to_string()
+    };
+    let (hash, files_hash) = (digest(|_| true), digest(SourceText::is_file));
     apply(settings, &scene, &mut run)?;
     Ok(Job {
         name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
@@ -120,7 +128,8 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
         places,
         overrides: settings.overrides.clone(),
         settings: settings.clone(),
-        hash: hash.to_string(),
+        hash,
+        files_hash,
         warnings,
     })
 }

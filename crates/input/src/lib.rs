@@ -61,6 +61,7 @@ pub(crate) mod overrides;
 mod own_library;
 pub mod problems;
 mod project;
+mod rewrite;
 mod scatter;
 pub mod schema;
 pub(crate) mod spec;
@@ -74,11 +75,14 @@ pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;
 pub use project::Project;
+pub use rewrite::{Move, rewritten_scene};
 pub use scatter::measured_sheet;
+pub use spec::optimise::Vary;
 pub use spec::study::{Best, Keep, Ranking, Samples};
 pub use study::{
-    DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Plan, Setting, Study, StudySettings, Tie,
-    column, load_study,
+    DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation, OptimisationKind,
+    Parameter, PatternFeedback, Plan, Setting, Study, StudySettings, Tie, column,
+    load_optimisation, load_study,
 };
 
 /// A scene that was read without errors.
@@ -184,9 +188,10 @@ fn unreadable(path: &Path, reason: &str) -> Error {
 fn is_other_kind(root: &Node, problems: &mut Problems) -> bool {
     match root.get("lumiduct") {
         None if root.get("lumiduct_study").is_some() => {
+            let command = if root.get("optimise").is_some() { "optimise" } else { "batch" };
             problems
                 .error(&Key::of(&["lumiduct_study"]), "this is a study, not a scene")
-                .hint("run it with `lumiduct batch`");
+                .hint(format!("run it with `lumiduct {command}`"));
             true
         }
         Some(Node { value: Value::Integer(version), origin })

@@ -37,8 +37,9 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
         if path.is_dir() {
             // Reports contain copies of scenes, wherever they are; build output and tests contain
             // none to run.
-            let is_report =
-                ["summary.json", "batch.json"].iter().any(|name| path.join(name).is_file());
+            let is_report = ["summary.json", "batch.json", "optimisation.json"]
+                .iter()
+                .any(|name| path.join(name).is_file());
             let is_passed_by =
                 name.starts_with('.') || ["target", "tests"].contains(&name.as_str());
             if depth > 0 && !is_report && !is_passed_by {

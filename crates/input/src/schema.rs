@@ -8,6 +8,7 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use crate::spec::SceneSpec;
+use crate::spec::optimise::OptimisationSpec;
 use crate::spec::study::StudySpec;
 
 /// The JSON Schema (draft 2020-12) of a scene merged with its sensor files. Every table is closed:
@@ -19,6 +20,11 @@ pub fn json_schema() -> Value {
 /// The JSON Schema (draft 2020-12) of a study file, closed likewise.
 pub fn study_schema() -> Value {
     schema_of::<StudySpec>()
+}
+
+/// The JSON Schema (draft 2020-12) of a study file with a table `optimise`, closed likewise.
+pub fn optimisation_schema() -> Value {
+    schema_of::<OptimisationSpec>()
 }
 
 fn schema_of<T: JsonSchema>() -> Value {

@@ -55,6 +55,14 @@ impl SourceText {
         &self.text
     }
 
+    /// Whether it is a file.
+    pub(crate) fn is_file(&self) -> bool {
+        match self.kind {
+            TextKind::File(_) => true,
+            TextKind::Argument => false,
+        }
+    }
+
     /// How a message names the text: the path, or the argument.
     pub(crate) fn label(&self) -> PathBuf {
         match &self.kind {

@@ -50,6 +50,7 @@ mod markdown;
 pub mod measured;
 mod mesh;
 mod npz;
+pub mod optimise;
 mod output;
 mod page;
 pub(crate) mod png;

@@ -10,6 +10,7 @@
 
 mod axes;
 mod build;
+mod cell_places;
 mod crossing;
 mod face;
 mod find_legs;

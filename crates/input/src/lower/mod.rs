@@ -24,7 +24,7 @@ mod luminaires;
 mod media;
 mod meshes;
 pub(crate) mod names;
-mod patterns;
+pub(crate) mod patterns;
 mod place;
 pub(crate) mod plan;
 mod rays;

@@ -13,6 +13,7 @@ pub(crate) mod daylight;
 pub(crate) mod finish;
 pub(crate) mod luminaire;
 pub(crate) mod medium;
+pub(crate) mod optimise;
 pub(crate) mod pattern;
 pub(crate) mod placement;
 pub(crate) mod rays;

@@ -4,9 +4,12 @@
 
 mod file;
 mod list;
+mod optimisation;
 mod parameters;
 mod rules;
 
+pub use optimisation::feedback::{LawKind, LightTarget, PatternFeedback};
+pub use optimisation::{Optimisation, OptimisationKind, load_optimisation};
 pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
 
 use crate::keys::{Key, Places};
@@ -17,11 +20,13 @@ use crate::spec::study::{Keep, PlanSpec, Ranking, Samples, StudyRunSpec, StudySp
 use crate::study::file::{StudyDraft, read};
 use crate::texts::argument_label;
 use crate::{Draft, Job, Settings, draft, load};
+use indexmap::IndexMap;
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_base::text::visible;
 use lumiduct_core::plan::{Check, NUMERICS};
 use serde::Serialize;
+use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -117,7 +122,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     if !problems.is_free_of_errors() {
         return Err(Error::Input(problems.into_diagnostics(&places)));
     }
-    let base = load(&scene, &common).map_err(|error| of_study(error, &spec, &places))?;
+    let base = load(&scene, &common).map_err(|error| of_set(error, &spec.set, &places))?;
     let parameters = parameters::lower(&spec, &base, &mut problems);
     rules::check_levels(&parameters, &places, &mut problems);
     rules::check_keys(&parameters, &scene, &common, &mut problems);
@@ -180,11 +185,11 @@ fn add_files(scene: &Path, settings: &Settings, hash: &mut Digest) {
 }
 
 /// The problems of the scene of a study; those from its `set` are reported at their place there.
-fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
+fn of_set(error: Error, set: &IndexMap<String, Value>, places: &Places) -> Error {
     let Error::Input(found) = error else { return error };
     let (mut own, mut rest) = (Problems::default(), Vec::new());
     for diagnostic in found {
-        let set = spec.set.iter().find(|(key, value)| {
+        let set = set.iter().find(|(key, value)| {
             let line = parameters::toml_text(value).map(|text| format!("{key}={text}"));
             line.is_some_and(|line| {
                 diagnostic.file.as_deref() == Some(Path::new(&argument_label(&line)))
@@ -219,17 +224,7 @@ fn common_settings(
     let is_asked = settings.paths.is_some() || settings.target.is_some();
     let (paths, error) = if is_asked { from_command } else { from_study };
     let measure = target.as_ref().map(|target| target.measure.clone());
-    let mut overrides = Vec::new();
-    for (key, value) in &spec.set {
-        match parameters::toml_text(value) {
-            Some(text) => overrides.push(format!("{key}={text}")),
-            None => {
-                let message = "cannot be a value of a scene";
-                problems.error(&Key::of(&["set", key]), message);
-            }
-        }
-    }
-    overrides.extend(settings.overrides.iter().cloned());
+    let overrides = overrides_of(&spec.set, settings, problems);
     Settings {
         overrides,
         estimator: *estimator,
@@ -239,6 +234,26 @@ fn common_settings(
         seed: settings.seed.or(*seed),
         ..Settings::default()
     }
+}
+
+/// Keys of the scene that a study sets, then those of the command line.
+fn overrides_of(
+    set: &IndexMap<String, Value>,
+    settings: &StudySettings,
+    problems: &mut Problems,
+) -> Vec<String> {
+    let mut overrides = Vec::new();
+    for (key, value) in set {
+        match parameters::toml_text(value) {
+            Some(text) => overrides.push(format!("{key}={text}")),
+            None => {
+                let message = "cannot be a value of a scene";
+                problems.error(&Key::of(&["set", key]), message);
+            }
+        }
+    }
+    overrides.extend(settings.overrides.iter().cloned());
+    overrides
 }
 
 /// The plan; `rows` are those of its table, if it has one.

@@ -174,7 +174,7 @@ pub(super) fn check_levels(parameters: &[Parameter], places: &Places, problems: 
     }
 }
 
-fn check_key(text: &str, key: &Key, problems: &mut Problems) {
+pub(super) fn check_key(text: &str, key: &Key, problems: &mut Problems) {
     if parse_key(text).is_none() {
         problems
             .error(key, format!("`{text}` is not a dotted key"))

@@ -22,7 +22,7 @@ impl TableAlong {
 
     /// The value at a position, mm.
     #[inline]
-    pub(crate) fn at(&self, place: f64) -> f64 {
+    pub fn at(&self, place: f64) -> f64 {
         match self.knots.as_slice() {
             [] => 0.0,
             [[_, value]] => *value,

@@ -220,7 +220,8 @@ fn rows_of(spec: &HexagonalSpec) -> GridSpec {
     }
 }
 
-fn law_knots(law: &LawSpec, length: f64) -> Vec<[f64; 2]> {
+/// Positions and lengths of a power law along a face of some length, mm.
+pub(crate) fn law_knots(law: &LawSpec, length: f64) -> Vec<[f64; 2]> {
     (0..=PIECES)
         .map(|i| {
             let share = f64::from(i) / f64::from(PIECES);

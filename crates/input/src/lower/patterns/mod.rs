@@ -1,7 +1,7 @@
 //! Patterns of holes, dots and patches on faces.
 
 pub(super) mod ground;
-mod layout;
+pub(crate) mod layout;
 
 use crate::keys::Key;
 use crate::lower::context::Context;

@@ -318,10 +318,11 @@ fn a_hole_at_the_end_of_a_face_stays_on_it() {
 fn a_step_makes_the_share_of_the_correction_that_the_study_asks_for() {
     let changes = |damping: &str| -> Vec<f64> {
         let keys = format!(
-            "limits = {{ from_mm = 2, to_mm = 8 }}\nmin_over_max = 0.99\nsteps = 2\ndamping = {damping}"
+            "limits = {{ from_mm = 4, to_mm = 16 }}\nmin_over_max = 0.99\nsteps = 2\ndamping = {damping}"
         );
-        let report = found(LOSSY, &study(480_000, &keys)).report;
-        report.steps[1].measured.values.iter().map(|own| (own / 4.0).ln()).collect()
+        let scene = LOSSY.replace("diameter_mm = 4", "diameter_mm = 8");
+        let report = found(&scene, &study(480_000, &keys)).report;
+        report.steps[1].measured.values.iter().map(|own| (own / 8.0).ln()).collect()
     };
     let (whole, tenth) = (changes("1"), changes("0.1"));
     assert!(whole.iter().any(|own| own.abs() > 0.05), "{whole:?}");

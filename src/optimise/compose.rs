@@ -32,6 +32,7 @@ pub(crate) fn report(
     let (study, feedback) = (measurements.study, measurements.feedback);
     let line = setting.map(|setting| format!("{}={setting}", feedback.key));
     let design = load(&study.scene, &study.common.with(line))?;
+    measurements.expect_unchanged(&design)?;
     let (elements, shape, face_mm) = elements(&design.scene, &feedback.pattern);
     let sensor = &study.base.scene.sensors[feedback.sensor.index()];
     let (quantity, unit) = quantity(sensor, study.base.scene.unit);
@@ -140,10 +141,16 @@ pub(crate) fn found_scene(
             study.hash,
             report.ending.words()
         ),
-        format!(
-            "It is the scene `{}` with another {} of `{}`.",
-            study.base.name, report.length, report.pattern
-        ),
+        match setting {
+            Some(_) => format!(
+                "It is the scene `{}` with another {} of `{}`.",
+                study.base.name, report.length, report.pattern
+            ),
+            None => format!(
+                "It is the scene `{}` as it was: no better design was found.",
+                study.base.name
+            ),
+        },
     ];
     let overrides = study.common.with(line).overrides;
     let text = rewritten_scene(&study.base.text, &overrides, way, &comment)?;

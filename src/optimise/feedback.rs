@@ -2,6 +2,8 @@
 
 use lumiduct_report::optimise::Uncertain;
 
+/// Different lengths in a millimetre: they are written with this resolution.
+pub(crate) const PER_MM: f64 = 1e4;
 /// Largest change of a length in one step, as a factor.
 pub(crate) const LARGEST_STEP: f64 = 1.5;
 /// Most of the flux that the zones before one can have taken, 1: the model has no flux beyond.
@@ -102,7 +104,7 @@ pub(crate) fn changed(value: f64, change: f64, exponent: f64) -> f64 {
 
 /// A length with a resolution of a tenth of a micrometre, mm.
 pub(crate) fn rounded(value: f64) -> f64 {
-    (1e4 * value).round() / 1e4
+    (PER_MM * value).round() / PER_MM
 }
 
 #[cfg(test)]

@@ -138,7 +138,7 @@ impl Measurements<'_> {
     }
 
     /// Refuses a scene that is another one than at the start, or that reads other files.
-    fn expect_unchanged(&self, job: &Job) -> Result<()> {
+    pub(crate) fn expect_unchanged(&self, job: &Job) -> Result<()> {
         if job.files_hash == self.study.base.files_hash {
             return Ok(());
         }

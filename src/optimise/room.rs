@@ -1,8 +1,9 @@
 //! The room of a length: its limits, and the bridges between neighbours. Also the element field of a scene as a list.
 
-use crate::optimise::feedback::rounded;
+use crate::optimise::feedback::{PER_MM, rounded};
 use crate::optimise::law::SizeLaw;
-use lumiduct_core::scene::pattern::{ElementField, ElementOutline};
+use lumiduct_core::scene::pattern::{Columns, ElementField, ElementOutline};
+use lumiduct_core::scene::shape::ChartRect;
 use lumiduct_core::scene::{FaceId, Scene};
 use lumiduct_input::{PatternFeedback, Vary};
 use lumiduct_report::optimise::{ElementShape, FoundElement};
@@ -14,6 +15,8 @@ const MOST_ROWS: usize = 5000;
 const ROW_POINTS: usize = 2000;
 /// Points at which a pitch is written.
 const PITCH_POINTS: usize = 200;
+/// Relative rounding that must not move a cap to the next shorter length, 1.
+const ROUNDING: f64 = 1e-13;
 
 /// The least and the greatest length along a face.
 #[derive(Debug, Clone)]
@@ -50,18 +53,20 @@ impl LengthBounds {
             face_length: feedback.face_length,
         };
         let Some((field, face)) = field(scene, &feedback.pattern) else { return room };
-        let start = scene.face_rect(face).map_or(0.0, |rect| rect.min.y);
+        let Some(rect) = scene.face_rect(face) else { return room };
+        let start = rect.min.y;
         let places: Vec<f64> = (0..field.rows.count()).map(|row| field.rows.place(row)).collect();
         match feedback.vary {
             Vary::Pitch => {
                 let longest = places.iter().map(|place| field.outline.size(*place).y);
-                room.limits[0] = from.max(longest.fold(0.0, f64::max) + feedback.bridge);
+                let least = from.max(longest.fold(0.0, f64::max) + feedback.bridge);
+                room.limits[0] = rounded_up(least);
             }
             Vary::Diameter => {
                 // Elements keep their bridges, and stay on the face.
-                let edge = |at: f64| 2.0 * (at - start).min(feedback.face_length - (at - start));
                 let cap = |row: usize| {
-                    to.min(gap(field, &places, row) - feedback.bridge).min(edge(places[row]))
+                    let edge = 2.0 * edge(field, (row, places[row]), rect);
+                    rounded_down(to.min(gap(field, &places, row) - feedback.bridge).min(edge))
                 };
                 room.rows =
                     places.iter().enumerate().map(|(row, at)| [at - start, cap(row)]).collect();
@@ -156,6 +161,16 @@ impl LengthBounds {
     }
 }
 
+/// The longest length that can be written up to a cap, mm.
+fn rounded_down(cap: f64) -> f64 {
+    (PER_MM * cap * (1.0 + ROUNDING)).floor() / PER_MM
+}
+
+/// The shortest length that can be written from a least one on, mm.
+fn rounded_up(least: f64) -> f64 {
+    (PER_MM * least * (1.0 - ROUNDING)).ceil() / PER_MM
+}
+
 /// Rows for a table of about `count` points: some of the rows, each with the least cap of all up to its neighbours, so that no straight line
 /// between two of them rises above a cap.
 fn sampled(rows: &[[f64; 2]], count: usize) -> Vec<[f64; 2]> {
@@ -189,6 +204,18 @@ fn gap(field: &ElementField, places: &[f64], row: usize) -> f64 {
         Some((places.get(other)? - places[row]).abs().hypot(aside))
     });
     along.fold(beside, f64::min)
+}
+
+/// Distance from the middles of a row's elements to the nearest edge of the face, mm.
+fn edge(field: &ElementField, (row, at): (usize, f64), rect: ChartRect) -> f64 {
+    let Columns { first, pitch, count, shift } = field.columns;
+    let along = (at - rect.min.y).min(rect.max.y - at);
+    if field.period.is_some() {
+        return along;
+    }
+    let from = if row % 2 == 1 { first + shift } else { first };
+    let to = from + pitch * count.saturating_sub(1) as f64;
+    along.min(from - rect.min.x).min(rect.max.x - to)
 }
 
 /// Distance across the face from an element to the nearest one of a row with the other shift, mm.
@@ -235,7 +262,8 @@ pub(crate) fn elements(scene: &Scene, name: &str) -> (Vec<FoundElement>, Element
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lumiduct_core::scene::pattern::{Columns, RowPositions, TableAlong};
+    use glam::DVec2;
+    use lumiduct_core::scene::pattern::{RowPositions, TableAlong};
 
     fn field(columns: Columns, period: Option<f64>) -> ElementField {
         ElementField {
@@ -259,6 +287,33 @@ mod tests {
             assert!(crate::optimise::law::table_at(&found, *place) <= cap + 1e-12, "{place}");
         }
         assert!(sampled(&rows, rows.len()) == rows);
+    }
+
+    #[test]
+    fn a_length_that_is_written_reaches_its_cap_and_not_beyond() {
+        for (cap, longest) in [(7.3 - 1.5, 5.8), (20.0 / 3.0, 6.6666), (28.5, 28.5)] {
+            assert_eq!(rounded_down(cap), longest);
+            assert_eq!(rounded(rounded_down(cap)), longest);
+        }
+        for (least, shortest) in [(4.1 + 1.2, 5.3), (20.0 / 3.0, 6.6667)] {
+            assert_eq!(rounded_up(least), shortest);
+            assert_eq!(rounded(rounded_up(least)), shortest);
+        }
+    }
+
+    #[test]
+    fn elements_keep_from_all_edges_of_a_flat_face_and_from_the_ends_of_a_round_one() {
+        let rect = ChartRect { min: DVec2::new(-5.0, 0.0), max: DVec2::new(5.0, 80.0) };
+        let columns = Columns { first: -2.0, pitch: 3.0, count: 2, shift: 1.5 };
+        for (period, row, at, expected) in [
+            (None, 0, 40.0, 3.0),
+            (None, 1, 40.0, 2.5),
+            (None, 0, 1.0, 1.0),
+            (None, 0, 78.0, 2.0),
+            (Some(10.0), 1, 40.0, 40.0),
+        ] {
+            assert_eq!(edge(&field(columns, period), (row, at), rect), expected, "{row} {at}");
+        }
     }
 
     #[test]

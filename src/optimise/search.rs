@@ -131,7 +131,7 @@ impl<'a> Search<'a> {
         self.measurements.measure(self.steps.len() + 1, &design, &best.unwrap_or_default())
     }
 
-    /// Adds a measured design, and learns from it.
+    /// Adds a measured design with its judgement: a worse one reduces the damping, one without a gain is counted.
     fn judge(&mut self, measured: MeasuredStep) {
         let misfit = judge(
             &measured,
@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
         let wants_light = self.measurements.zones.wanted.iter().any(|wanted| *wanted > 0.0);
         if (weights.uniformity == 0.0 && weights.efficiency == 0.0) || !wants_light {
             let why = "nothing is wanted: the weights of uniformity and efficiency are both 0, or the wanted light is 0 in every \
-                       zone; give one of them a weight above 0";
+                       zone; give a weight or the profile a value above 0";
             return Next::End(Ending::ZeroWeight(why.to_owned()));
         }
         let Some(last) = self.steps.last() else {

@@ -248,6 +248,14 @@ fn bad_optimisations_are_refused_with_the_line_to_change_and_write_nothing() {
 }
 
 #[test]
+fn a_scene_with_batches_of_its_own_is_refused() {
+    let place = tube(STUDY);
+    fs::write(place.path("tube.toml"), format!("{TUBE}[run]\nbatches = 8\n")).unwrap();
+    let said = place.bad(2, "optimise study.toml");
+    assert!(said.contains("remove `batches` from [run] of the scene"), "{said}");
+}
+
+#[test]
 fn bad_profiles_are_refused_at_their_line() {
     let keys = "sensor = \"wall\"\ntarget = { profile = { file = \"light.csv\" } }";
     for (table, words) in [

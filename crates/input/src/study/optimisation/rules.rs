@@ -287,9 +287,15 @@ fn zones(
 /// The number of paths, without which no measurement repeats.
 fn paths(base: &Job, problems: &mut Problems) -> Option<u64> {
     let stop = &base.run.stop;
-    match (stop.paths, &stop.target, stop.time) {
-        (Some(paths), None, None) => Some(paths),
-        (_, _, _) => {
+    match (stop.paths, &stop.target, stop.time, stop.batches) {
+        (Some(paths), None, None, None) => Some(paths),
+        (Some(_), None, None, Some(_)) => {
+            let message = "an optimisation has batches of its own";
+            let hint = "remove `batches` from [run] of the scene";
+            problems.error(&Key::of(&["run"]), message).hint(hint);
+            None
+        }
+        (_, _, _, _) => {
             let message = "an optimisation ends its measurements by a number of paths alone";
             problems.error(&Key::of(&["run"]), message).hint("give the study `paths` under [run]");
             None

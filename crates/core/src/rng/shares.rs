@@ -34,8 +34,9 @@ impl StratumShares {
         Self { strata, tried: strata, turn: 0.0, paths }
     }
 
-    /// About `about` paths instead, for a trial: in some of the strata with as many paths in each, or with fewer as a step towards
-    /// as many.
+    /// The same for a trial with about `about` paths. If these cannot give every stratum as many paths as the run does, only some strata
+    /// are tried, with as many in each as in the run but at most [`TRIED_EACH`], unless `about` gives all strata more; what more would
+    /// gain is extrapolated.
     pub(crate) fn for_trial(self, about: u64) -> Self {
         if self.strata < 2 || self.paths < self.strata || self.paths <= about {
             return Self::of(self.strata, about);

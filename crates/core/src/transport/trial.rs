@@ -152,7 +152,7 @@ impl Trials<'_> {
             for ((own, sensor), strata) in all.iter_mut().zip(self.sensors).zip(&tried.strata) {
                 let Some(strata) = strata else { continue };
                 own.trial.cost = strata.cost(&tried.batches, *sensor, tried.work_of_one);
-                // Only the fluxes of different strata are independent.
+                // The batches of a pair have the same strata: only means over pairs are independent.
                 let of = (*sensor, PAIR);
                 own.flux = flux_of(self.scene, &tried.batches, of, sources(self.scene));
                 own.by_source = by_source(self.scene, &tried.batches, of);
@@ -245,7 +245,7 @@ fn variance_over_cells(cells: &Cells, batches: u64) -> Option<f64> {
         sum += mean;
     }
     let least = sum * sum / cells.count() as f64;
-    (variance > 0.0 && least > 0.0).then(|| variance / square.max(least))
+    (least > 0.0).then(|| variance / square.max(least))
 }
 
 /// The flux of a sensor, batch by batch.
@@ -323,5 +323,10 @@ mod tests {
         let one = variance_over_cells(&cells(&[&[0], &[], &[], &[]]), 4);
         assert!((one.unwrap() - 4.0).abs() < 1e-12, "one event says nothing about the others");
         assert_eq!(variance_over_cells(&cells(&[&[], &[], &[], &[]]), 4), None, "in the dark");
+        assert_eq!(
+            variance_over_cells(&cells(&[[0, 2].as_slice(); 4]), 4),
+            Some(0.0),
+            "without noise"
+        );
     }
 }

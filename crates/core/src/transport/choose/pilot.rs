@@ -1,14 +1,12 @@
 //! The choice between the estimators, by measurement: a pilot of each on every sensor.
 //!
-//! The work to reach a relative error is t = work × relative variance / error², and at least that
-//! of the passes without which gathering gives no result. The pilot measures it for forward,
-//! backward, their mix and gather with a small part of the budget, in counted work, never in time,
-//! and takes the smallest t. The budget of a run to a target is what the best needs according to a
-//! first, small pilot. Gathering is excluded if there is an objection: a bias above the target
-//! and its noise, or a flux that the best of the unbiased ones contradicts. Windows alone cannot
-//! see a feature that is smaller than all of them. An unbiased
-//! estimator is excluded if it found too little compared with another: its variance does not
-//! contain what it has missed so far. Sensors that want different estimators agree on a few.
+//! The work to reach a relative error is t = work × relative variance / error², and at least that of the passes without which
+//! gathering gives no result. The pilot measures it for forward, backward, their mix and gather with a small part of the
+//! budget, in counted work, never in time, and takes the smallest t. The budget of a run to a target is what the best needs
+//! according to a first, small pilot. Gathering is excluded if there is an objection: a bias above the target and its noise, or
+//! a flux that the best of the unbiased ones contradicts. Windows alone cannot see a feature that is smaller than all of them.
+//! An unbiased estimator is excluded if it found too little compared with another: its variance does not contain what it has
+//! missed so far. Sensors that want different estimators agree on a few.
 
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
@@ -140,8 +138,11 @@ impl Wanted {
             Some(own) if !is_given => {
                 let best = error.and_then(|error| Some((error, choice.time(error)?)));
                 // In the dark all are equal.
-                best.map_or(1.0, |(error, best)| {
-                    own.time(error).map_or(f64::INFINITY, |time| time / best)
+                best.map_or(1.0, |(error, best)| match own.time(error) {
+                    None => f64::INFINITY,
+                    // Neither may need any.
+                    Some(time) if time == best => 1.0,
+                    Some(time) => time / best,
                 })
             }
             Some(_) | None => f64::INFINITY,
@@ -155,8 +156,8 @@ impl Wanted {
     }
 }
 
-/// The choices. Estimators that differ share the work of the run: of all sets of them, that which delays the sensor that loses
-/// most the least, each with its equal share of the work.
+/// The choices. With k estimators in a run each gets 1/k of the work. Of all sets of estimators, that one is taken whose largest slowdown of
+/// a sensor is least: k times the time by its best member over the time by the sensor's own choice.
 fn in_common(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
     let mut all = Estimator::TRIED.to_vec();
     for Wanted { choice, .. } in &wanted {
@@ -294,6 +295,8 @@ mod tests {
         let [forward, mix] = [Estimator::Forward, Estimator::Mix];
         let easy = || wanted([Some(1e-6), Some(5e-6)], forward);
         assert_eq!(chosen_beside(easy()), [forward; 2], "mix gains a tenth there");
+        let without_noise = || wanted([Some(0.0), Some(0.0)], forward);
+        assert_eq!(chosen_beside(without_noise()), [mix; 2], "either will do for one of them");
         assert_eq!(chosen_beside(wanted([Some(5e-6), Some(1e-6)], mix)), [mix; 2]);
         let far = vec![wanted([Some(1e-4), Some(1e-5)], mix), easy()];
         let chosen: Vec<Estimator> = in_common(far).iter().map(|own| own.chosen).collect();

@@ -36,6 +36,9 @@ impl TriedStrata {
 
 /// Relative variance of a batch with paths in all strata, over its cells: Σσ²/Σmean². Where noise hides the squares it is a
 /// bound, as for batches of all strata. `None` in the dark.
+///
+/// Each cell is a stratum of its own. It is tried in `share` of the pairs, with 1/share times its flux in a batch of all strata: sums of squares over all pairs,
+/// divided by their number over `share`, are those of such a batch, and the flux is unbiased as it is.
 fn relative_variance(pairs: &[Cells], share: f64) -> Option<f64> {
     let (mut variance, mut square, mut sum) = (0.0, 0.0, 0.0);
     for pair in pairs {
@@ -50,7 +53,8 @@ fn relative_variance(pairs: &[Cells], share: f64) -> Option<f64> {
     let flux = sum / (PAIR * pairs.len()) as f64;
     let least = flux * flux / pairs.first()?.count() as f64;
     let square = (square / pairs_of_all).max(least);
-    (variance > 0.0 && least > 0.0).then(|| variance / pairs_of_all / square)
+    // Rounding may leave a tiny negative variance where both batches agree.
+    (least > 0.0).then(|| variance.max(0.0) / pairs_of_all / square)
 }
 
 #[cfg(test)]
@@ -76,6 +80,12 @@ mod tests {
         let pairs: Vec<Cells> = (0..4).map(of_cell).collect();
         let found = relative_variance(&pairs, 0.25).unwrap();
         assert!((found - 0.02 * 30.0 / (30.0 - 0.01 * 30.0)).abs() < 1e-12, "{found}");
+    }
+
+    #[test]
+    fn cells_without_noise_have_no_variance() {
+        let pairs: Vec<Cells> = (0..4).map(|cell| pair(cell, [0.3, 0.3])).collect();
+        assert_eq!(relative_variance(&pairs, 0.25), Some(0.0));
     }
 
     #[test]

@@ -9,8 +9,8 @@ use crate::optimise::{FinishedOptimisation, OptimisationOptions, run_optimisatio
 use crate::study::OnExisting;
 use clap::Args;
 use lumiduct_input::StudySettings;
-use lumiduct_report::Written;
-use lumiduct_report::optimise::{Ending, terminal};
+use lumiduct_report::optimise::terminal;
+use lumiduct_report::{Standing, Written};
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -94,16 +94,9 @@ fn print_outcome(finished: &FinishedOptimisation, quiet: bool) -> ExitCode {
             return fail(&error);
         }
     }
-    match finished.report.ending {
-        Ending::Reached => ExitCode::SUCCESS,
-        Ending::Interrupted => ExitCode::from(INTERRUPTED),
-        Ending::Unreachable(_)
-        | Ending::ContradictingLimits(_)
-        | Ending::ZeroWeight(_)
-        | Ending::HiddenByNoise(_)
-        | Ending::NoProgress(_)
-        | Ending::OutOfSteps(_)
-        | Ending::Refused(_)
-        | Ending::NotConfirmed(_) => ExitCode::from(1),
+    match finished.report.ending.standing() {
+        Standing::Good => ExitCode::SUCCESS,
+        Standing::Open => ExitCode::from(INTERRUPTED),
+        Standing::Bad => ExitCode::from(1),
     }
 }

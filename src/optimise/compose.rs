@@ -1,8 +1,8 @@
 //! From what was found to the record of the report and to the scene that is ready to run.
 
+use crate::optimise::bounds::elements;
 use crate::optimise::law::SizeLaw;
 use crate::optimise::measure::Measurements;
-use crate::optimise::room::elements;
 use crate::optimise::search::SearchEnd;
 use crate::pipeline::VERSION;
 use lumiduct_base::error::Result;

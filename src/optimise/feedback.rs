@@ -19,7 +19,7 @@ pub(crate) struct ZoneLight<'a> {
     /// Wanted light, up to a common factor; 0 where a zone does not count.
     pub(crate) wanted: &'a [f64],
     /// Share of the light that the pattern lets out, 1.
-    pub(crate) taken: f64,
+    pub(crate) efficiency: f64,
 }
 
 impl ZoneLight<'_> {
@@ -55,15 +55,15 @@ impl ZoneLight<'_> {
     /// unless together they deviate by more than noise does, by this number of standard errors.
     pub(crate) fn sure_lack(&self, sigmas: f64) -> Vec<Option<f64>> {
         let lack = self.lack();
-        let shown = if beyond_noise(&lack) <= sigmas { |_| 0.0 } else { shrunk };
+        let shown = if beyond_noise(&lack) <= sigmas { |_| 0.0 } else { without_noise };
         lack.into_iter().map(|own| own.map(shown)).collect()
     }
 
     /// Shares of the flux that entered the guide, 1: what each zone takes, and what is left at its middle.
-    pub(crate) fn taken(&self) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn shares_taken(&self) -> (Vec<f64>, Vec<f64>) {
         let light: Vec<f64> = self.measured.iter().map(|own| own.value.max(0.0)).collect();
         let sum = light.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let taken: Vec<f64> = light.iter().map(|own| self.taken * own / sum).collect();
+        let taken: Vec<f64> = light.iter().map(|own| self.efficiency * own / sum).collect();
         let mut before = 0.0;
         let left = taken.iter().map(|own| {
             let here = before + 0.5 * own;
@@ -88,7 +88,7 @@ fn beyond_noise(lack: &[Option<Uncertain>]) -> f64 {
 
 /// A lack of light without the part that noise would make of it: 0 within the error, and nearly the whole where it is many errors. The
 /// factor 1 - (σ/x)² is that of Wiener's filter.
-fn shrunk(lack: Uncertain) -> f64 {
+fn without_noise(lack: Uncertain) -> f64 {
     if lack.value.abs() <= lack.std_error {
         return 0.0;
     }
@@ -96,9 +96,8 @@ fn shrunk(lack: Uncertain) -> f64 {
     lack.value * (1.0 - noise * noise)
 }
 
-/// A length whose openings change by a factor of which `change` is the logarithm, mm; `exponent` is that of the openings as a function
-/// of the length.
-pub(crate) fn changed(value: f64, change: f64, exponent: f64) -> f64 {
+/// The length after its openings have changed by the factor exp(`change`), mm; openings go with the length to the power `exponent`.
+pub(crate) fn length_after(value: f64, change: f64, exponent: f64) -> f64 {
     rounded(value * (change / exponent).exp())
 }
 
@@ -118,7 +117,7 @@ mod tests {
     #[test]
     fn no_zone_lacks_light_within_its_error() {
         let measured = light(&[1.0, 1.01, 0.99, 1.0], 0.02);
-        let light = ZoneLight { measured: &measured, wanted: &[1.0; 4], taken: 0.5 };
+        let light = ZoneLight { measured: &measured, wanted: &[1.0; 4], efficiency: 0.5 };
         assert_eq!(light.sure_lack(2.0), [Some(0.0); 4]);
     }
 
@@ -126,7 +125,7 @@ mod tests {
     fn one_zone_beyond_its_error_may_be_noise_and_many_are_not() {
         let sure = |values: &[f64], sigmas: f64| {
             let measured = light(values, 0.02);
-            let light = ZoneLight { measured: &measured, wanted: &[1.0; 4], taken: 0.5 };
+            let light = ZoneLight { measured: &measured, wanted: &[1.0; 4], efficiency: 0.5 };
             light.sure_lack(sigmas)
         };
         assert_eq!(sure(&[1.0, 1.03, 0.99, 1.0], 2.0), [Some(0.0); 4]);
@@ -157,7 +156,7 @@ mod tests {
     #[test]
     fn zones_that_do_not_count_lack_nothing_and_dark_ones_lack_much() {
         let measured = light(&[2.0, 1.0, 0.0], 0.001);
-        let light = ZoneLight { measured: &measured, wanted: &[1.0, 0.0, 1.0], taken: 0.0 };
+        let light = ZoneLight { measured: &measured, wanted: &[1.0, 0.0, 1.0], efficiency: 0.0 };
         let found = light.sure_lack(3.0);
         assert_eq!(found[1], None);
         assert!(found[2] > Some(0.5), "{found:?}");
@@ -166,8 +165,8 @@ mod tests {
     #[test]
     fn zones_take_their_share_of_the_efficiency() {
         let measured = light(&[3.0, 1.0], 0.001);
-        let light = ZoneLight { measured: &measured, wanted: &[1.0; 2], taken: 0.8 };
-        let (taken, left) = light.taken();
+        let light = ZoneLight { measured: &measured, wanted: &[1.0; 2], efficiency: 0.8 };
+        let (taken, left) = light.shares_taken();
         for (found, expected) in taken.iter().chain(&left).zip([0.6, 0.2, 0.7, 0.3]) {
             assert!((found - expected).abs() < 1e-12, "{taken:?} {left:?}");
         }
@@ -175,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_length_follows_the_exponent() {
-        assert_eq!(changed(10.0, 4.0_f64.ln(), -1.0), 2.5);
-        assert_eq!(changed(10.0, 1.21_f64.ln(), 2.0), 11.0);
+        assert_eq!(length_after(10.0, 4.0_f64.ln(), -1.0), 2.5);
+        assert_eq!(length_after(10.0, 1.21_f64.ln(), 2.0), 11.0);
     }
 }

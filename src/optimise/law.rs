@@ -95,18 +95,6 @@ impl SizeLaw {
     }
 }
 
-/// The value of a table of positions and values; constant beyond its ends.
-pub(crate) fn table_at(table: &[[f64; 2]], place: f64) -> f64 {
-    let next = table.partition_point(|own| own[0] <= place);
-    match (next.checked_sub(1).and_then(|before| table.get(before)), table.get(next)) {
-        (Some(before), Some(after)) => {
-            before[1] + (place - before[0]) / (after[0] - before[0]) * (after[1] - before[1])
-        }
-        (Some(only), None) | (None, Some(only)) => only[1],
-        (None, None) => 0.0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,11 +142,5 @@ mod tests {
         assert_eq!(spline.points, [-5.0, 10.0, 25.0]);
         assert!((spline.shares(0.0)[0] - 2.0 / 3.0).abs() < 1e-12);
         assert_eq!([spline.shares(-9.0), spline.shares(25.0)], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
-    }
-
-    #[test]
-    fn a_table_is_straight_between_its_rows() {
-        assert_eq!(table_at(&[[1.0, 2.0], [3.0, 6.0]], 2.0), 4.0);
-        assert_eq!(table_at(&[[1.0, 2.0], [3.0, 6.0]], 9.0), 6.0);
     }
 }

@@ -7,27 +7,27 @@
 //! Each kind of optimisation is a variant of `OptimisationKind`. Results are written from the records of the measurements alone, so that
 //! an optimisation that was killed and resumed ends with the same bytes.
 
-mod bounded;
+mod bounds;
 mod check;
 mod compose;
 mod end;
 mod feedback;
 mod judge;
 mod law;
+mod least_squares;
 mod measure;
 mod response;
-mod room;
 mod search;
 mod store;
 mod zones;
 
 pub use measure::OptimisationProgress;
 
+use crate::optimise::bounds::LengthBounds;
 use crate::optimise::check::check;
 use crate::optimise::compose::{Found, found_scene, report};
 use crate::optimise::law::SizeLaw;
 use crate::optimise::measure::Measurements;
-use crate::optimise::room::LengthBounds;
 use crate::optimise::search::Search;
 use crate::optimise::store::StepStore;
 use crate::optimise::zones::Zones;
@@ -96,8 +96,8 @@ pub fn run_optimisation(
     };
     let store = StepStore::open(&dir, &identity, options.existing)?;
     let zones = Zones::of(feedback);
-    let room = LengthBounds::of(feedback, &study.base.scene);
-    let law = SizeLaw::over(feedback.law, &zones.places, room.ends());
+    let bounds = LengthBounds::of(feedback, &study.base.scene);
+    let law = SizeLaw::over(feedback.law, &zones.places, bounds.ends());
     let start = Instant::now();
     let measurements = Measurements {
         study: &study,
@@ -108,13 +108,13 @@ pub fn run_optimisation(
         watch,
         start,
     };
-    let mut end = Search::new(&measurements, &law, &room).run()?;
-    let checks = check(&measurements, &mut end, |values| room.table(&law, values))?;
+    let mut end = Search::new(&measurements, &law, &bounds).run()?;
+    let checks = check(&measurements, &mut end, |values| bounds.table(&law, values))?;
     let setting = end
         .steps
         .get(end.best)
         .filter(|own| !own.measured.is_start)
-        .map(|own| room.table(&law, &own.measured.values));
+        .map(|own| bounds.table(&law, &own.measured.values));
     interrupt.begin(Activity::Computing);
     let found = Found { identity, end, checks, setting };
     let scene_setting = found.setting.clone();

@@ -23,7 +23,7 @@ pub(crate) struct MeasuredOpenings<'a> {
 }
 
 /// Change of the logarithm of the light of each zone by the logarithm of the openings at each point: a row for each zone.
-pub(crate) fn learned(
+pub(crate) fn fit_response(
     law: &SizeLaw,
     zones: &[f64],
     designs: &[MeasuredOpenings<'_>],
@@ -53,7 +53,7 @@ pub(crate) fn learned(
 
 /// Change of the logarithm of the flux in the guide at each zone: what zones before it take is missing there.
 fn flux_response(light: &ZoneLight<'_>, shares: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let (taken, left) = light.taken();
+    let (taken, left) = light.shares_taken();
     let count = shares.first().map_or(0, Vec::len);
     let row = |zone: usize| {
         let mut row = vec![0.0; count];
@@ -128,10 +128,10 @@ mod tests {
             .zip(&lights)
             .map(|(openings, measured)| MeasuredOpenings {
                 openings: openings.to_vec(),
-                light: ZoneLight { measured, wanted: &[1.0; 6], taken: 0.0 },
+                light: ZoneLight { measured, wanted: &[1.0; 6], efficiency: 0.0 },
             })
             .collect();
-        learned(&law, &ZONES, &designs)
+        fit_response(&law, &ZONES, &designs)
     }
 
     #[test]
@@ -164,8 +164,9 @@ mod tests {
     fn what_zones_take_is_missing_in_those_behind_them() {
         let (measured, law) =
             (light(&[0.0; 6], 0.0), SizeLaw::over(LawKind::Table, &ZONES, [0.0, 50.0]));
-        let light = ZoneLight { measured: &measured, wanted: &[1.0; 6], taken: 0.6 };
-        let found = learned(&law, &ZONES, &[MeasuredOpenings { openings: vec![0.0; 6], light }]);
+        let light = ZoneLight { measured: &measured, wanted: &[1.0; 6], efficiency: 0.6 };
+        let found =
+            fit_response(&law, &ZONES, &[MeasuredOpenings { openings: vec![0.0; 6], light }]);
         // A tenth leaves in each zone: 0.45 is left at the middle of the last.
         assert!((found[5][0] + 0.1 / 0.45).abs() < 1e-9 && found[0][5] == 0.0, "{found:?}");
     }

@@ -2,14 +2,14 @@
 //!
 //! Every decision follows from the records of the measurements alone.
 
-use crate::optimise::bounded::{StepProblem, best_changes};
+use crate::optimise::bounds::{BoundMet, LengthBounds};
 use crate::optimise::end::{Obstacle, SearchStop, reason};
-use crate::optimise::feedback::{LARGEST_STEP, ZoneLight, changed, rounded};
+use crate::optimise::feedback::{LARGEST_STEP, ZoneLight, length_after, rounded};
 use crate::optimise::judge::{ObjectiveWeights, judge, noise, ratios};
-use crate::optimise::law::{SizeLaw, table_at};
+use crate::optimise::law::SizeLaw;
+use crate::optimise::least_squares::{StepProblem, best_changes};
 use crate::optimise::measure::{DesignToMeasure, MeasureEnd, Measurements};
-use crate::optimise::response::{MeasuredOpenings, learned};
-use crate::optimise::room::{LengthBounds, RoomEnd};
+use crate::optimise::response::{MeasuredOpenings, fit_response};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::{format_percent, format_with_error};
 use lumiduct_input::Vary;
@@ -27,6 +27,8 @@ const SEEN_WITH_FEW_PATHS: f64 = 3.0;
 const SEEN_WITH_ALL_PATHS: f64 = 2.0;
 /// Least share of a correction, after steps that made things worse, 1.
 const LEAST_DAMPING: f64 = 0.2;
+/// Share of a limit within which it holds a length, 1: damped steps approach it without touching it.
+const AT_LIMIT: f64 = 0.01;
 /// Factor by which all openings grow at once, for efficiency.
 const GROWTH: f64 = 1.3;
 /// Most times that they grow.
@@ -46,7 +48,7 @@ pub(crate) struct SearchEnd {
 pub(crate) struct Search<'a> {
     measurements: &'a Measurements<'a>,
     law: &'a SizeLaw,
-    room: &'a LengthBounds,
+    bounds: &'a LengthBounds,
     steps: Vec<JudgedStep>,
     /// Place in [`PATH_PARTS`].
     level: usize,
@@ -70,12 +72,12 @@ impl<'a> Search<'a> {
     pub(crate) fn new(
         measurements: &'a Measurements<'a>,
         law: &'a SizeLaw,
-        room: &'a LengthBounds,
+        bounds: &'a LengthBounds,
     ) -> Self {
         Self {
             measurements,
             law,
-            room,
+            bounds,
             steps: Vec::new(),
             level: 0,
             damping: measurements.feedback.damping,
@@ -89,7 +91,7 @@ impl<'a> Search<'a> {
     pub(crate) fn run(mut self) -> Result<SearchEnd> {
         let start = &self.measurements.feedback.start;
         let mut values: Vec<f64> =
-            self.law.points.iter().map(|point| rounded(table_at(start, *point))).collect();
+            self.law.points.iter().map(|point| rounded(start.at(*point))).collect();
         let ending = loop {
             let step = match self.measure(&values)? {
                 MeasureEnd::Done(step) => step,
@@ -122,7 +124,7 @@ impl<'a> Search<'a> {
             estimator: run.estimator,
             paths: (feedback.paths / PATH_PARTS[self.level]).max(1),
             values: values.to_vec(),
-            setting: (!self.steps.is_empty()).then(|| self.room.table(self.law, values)),
+            setting: (!self.steps.is_empty()).then(|| self.bounds.table(self.law, values)),
         };
         let best = self.steps.get(self.best()).map(|own| {
             let ratio = own.misfit.min_over_max;
@@ -158,7 +160,7 @@ impl<'a> Search<'a> {
         ZoneLight {
             measured: &step.zones,
             wanted: &self.measurements.zones.wanted,
-            taken: step.efficiency.value.clamp(0.0, 1.0),
+            efficiency: step.efficiency.value.clamp(0.0, 1.0),
         }
     }
 
@@ -196,15 +198,15 @@ impl<'a> Search<'a> {
             && step.misfit.min_over_max.value >= feedback.min_over_max
     }
 
-    /// Whether a step has lengths within their room.
+    /// Whether a step has lengths within their bounds.
     fn is_within(&self, place: usize) -> bool {
         let values = &self.steps[place].measured.values;
-        self.held(values) == *values
+        self.within_bounds(values) == *values
     }
 
     fn next(&mut self) -> Next {
         let feedback = self.measurements.feedback;
-        if let Some(why) = self.room.contradiction() {
+        if let Some(why) = self.bounds.contradiction() {
             return Next::End(Ending::ContradictingLimits(why));
         }
         let weights = ObjectiveWeights::of(self.measurements.feedback);
@@ -219,7 +221,7 @@ impl<'a> Search<'a> {
         };
         let (ratio, is_full) = (last.misfit.min_over_max, self.level + 1 == PATH_PARTS.len());
         let is_reached = ratio.value - SURE * ratio.std_error >= feedback.min_over_max;
-        let (moved, obstacle) = self.moved(last);
+        let (moved, obstacle) = self.step_from(last);
         let is_moved = moved != last.measured.values;
         let scatter = noise(&ratios(&last.measured.zones, &self.measurements.zones.wanted));
         let is_noisy = last.misfit.deviation.value <= 2.0 * scatter;
@@ -227,14 +229,14 @@ impl<'a> Search<'a> {
         let is_stuck = self.without_gain >= MOST_STEPS_WITHOUT_GAIN;
         if !is_full && !is_over && (is_reached || is_noisy || is_stuck || !is_moved) {
             (self.level, self.without_gain) = (self.level + 1, 0);
-            let same = || self.held(&last.measured.values);
+            let same = || self.within_bounds(&last.measured.values);
             return Next::Measure(if is_reached { same() } else { moved });
         }
         let is_done = is_reached || !is_moved || is_stuck;
         if is_full
             && is_done
             && !is_over
-            && let Some(grown) = self.grown()
+            && let Some(grown) = self.larger_openings()
         {
             return Next::Measure(grown);
         }
@@ -244,14 +246,14 @@ impl<'a> Search<'a> {
         Next::Measure(moved)
     }
 
-    /// Lengths within their room: those of the scene as it is may lie beyond it.
-    fn held(&self, values: &[f64]) -> Vec<f64> {
+    /// Lengths within their bounds: those of the scene as it is may lie beyond it.
+    fn within_bounds(&self, values: &[f64]) -> Vec<f64> {
         let held = values.iter().enumerate();
-        held.map(|(point, value)| rounded(self.room.held(self.law, point, *value).0)).collect()
+        held.map(|(point, value)| rounded(self.bounds.clamped(self.law, point, *value).0)).collect()
     }
 
     /// The lengths after a step, and what keeps points from moving.
-    fn moved(&self, last: &JudgedStep) -> (Vec<f64>, Obstacle) {
+    fn step_from(&self, last: &JudgedStep) -> (Vec<f64>, Obstacle) {
         let (feedback, old) = (self.measurements.feedback, &last.measured.values);
         let is_full = self.level + 1 == PATH_PARTS.len();
         let sigmas = if is_full { SEEN_WITH_ALL_PATHS } else { SEEN_WITH_FEW_PATHS };
@@ -262,16 +264,16 @@ impl<'a> Search<'a> {
             obstacle.note_noise();
         }
         if is_noise || feedback.uniformity_weight == 0.0 {
-            return (self.held(old), obstacle);
+            return (self.within_bounds(old), obstacle);
         }
         let designs: Vec<MeasuredOpenings<'_>> =
             self.steps.iter().map(|own| self.design(&own.measured)).collect();
-        let response = learned(self.law, &self.measurements.zones.places, &designs);
+        let response = fit_response(self.law, &self.measurements.zones.places, &designs);
         let exponent = exponent(feedback.vary);
         let openings: Vec<f64> = old.iter().map(|value| exponent * value.ln()).collect();
         let bounds: Vec<[f64; 2]> = (0..old.len())
             .map(|point| {
-                let ends = self.room.bounds(self.law, point);
+                let ends = self.bounds.bounds(self.law, point);
                 let ends = ends.map(|end| exponent * end.ln() - openings[point]);
                 let most = exponent.abs() * LARGEST_STEP.ln();
                 [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-most, most))
@@ -281,10 +283,10 @@ impl<'a> Search<'a> {
             StepProblem { response: &response, lack: &lack, openings: &openings, bounds: &bounds };
         let found = best_changes(problem).into_iter().zip(old).enumerate();
         let values = found.map(|(point, (own, value))| {
-            let wanted = changed(*value, self.damping * own.change, exponent);
-            let (held, _) = self.room.held(self.law, point, wanted);
-            let full = changed(*value, own.change, exponent);
-            if own.is_held && self.room.held(self.law, point, full).1 != RoomEnd::Inside {
+            let wanted = length_after(*value, self.damping * own.change, exponent);
+            let (held, _) = self.bounds.clamped(self.law, point, wanted);
+            let full = length_after(*value, own.change, exponent);
+            if own.is_held && self.bounds.clamped(self.law, point, full).1 != BoundMet::None {
                 obstacle.hold(self.law.points[point], held);
             }
             rounded(held)
@@ -294,7 +296,7 @@ impl<'a> Search<'a> {
     }
 
     /// The best lengths with larger openings, where efficiency has a weight, and the last growth paid.
-    fn grown(&mut self) -> Option<Vec<f64>> {
+    fn larger_openings(&mut self) -> Option<Vec<f64>> {
         if self.measurements.feedback.efficiency_weight == 0.0 || self.growths >= MOST_GROWTHS {
             return None;
         }
@@ -307,7 +309,7 @@ impl<'a> Search<'a> {
         let factor = GROWTH.powf(1.0 / exponent(self.measurements.feedback.vary));
         let old = &best.measured.values;
         let grown: Vec<f64> = (0..old.len())
-            .map(|point| rounded(self.room.held(self.law, point, factor * old[point]).0))
+            .map(|point| rounded(self.bounds.clamped(self.law, point, factor * old[point]).0))
             .collect();
         if grown == *old {
             return None;
@@ -355,11 +357,13 @@ impl<'a> Search<'a> {
     fn active_limits(&self, values: &[f64]) -> Vec<String> {
         let held = values.iter().enumerate().filter_map(|(point, value)| {
             let at = self.law.points[point];
-            let (end, is_at) = self.room.held(self.law, point, *value);
-            let words = match is_at {
-                RoomEnd::Inside => return None,
-                RoomEnd::Least => "least",
-                RoomEnd::Greatest => "most",
+            let [least, greatest] = self.bounds.bounds(self.law, point);
+            let (end, words) = if *value <= (1.0 + AT_LIMIT) * least {
+                (least, "least")
+            } else if *value >= (1.0 - AT_LIMIT) * greatest {
+                (greatest, "most")
+            } else {
+                return None;
             };
             Some(format!("{at:.4} mm along the face: {} mm is the {words}", rounded(end)))
         });

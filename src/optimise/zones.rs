@@ -1,6 +1,5 @@
 //! Zones: cells of a sensor at the same place along a face, in the order of their places, and what light is wanted there.
 
-use crate::optimise::law::table_at;
 use lumiduct_core::measure::SensorMap;
 use lumiduct_input::{LightTarget, PatternFeedback};
 use lumiduct_report::optimise::{Uncertain, ZonePlace};
@@ -17,34 +16,17 @@ pub(crate) struct Zones {
 
 impl Zones {
     pub(crate) fn of(feedback: &PatternFeedback) -> Self {
-        let mut order: Vec<usize> = (0..feedback.cell_places.len()).collect();
-        order.sort_by(|one, other| {
-            feedback.cell_places[*one].total_cmp(&feedback.cell_places[*other])
-        });
-        let (mut places, mut cells): (Vec<f64>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
-        for cell in order {
-            let place = feedback.cell_places[cell];
-            match (places.last(), cells.last_mut()) {
-                (Some(last), Some(own))
-                    if place - last <= PatternFeedback::SAME_ZONE * feedback.face_length =>
-                {
-                    own.push(cell);
-                }
-                _ => {
-                    places.push(place);
-                    cells.push(vec![cell]);
-                }
-            }
-        }
+        let places: Vec<f64> = feedback.zones.iter().map(|zone| zone.along).collect();
         let wanted = match &feedback.target {
             LightTarget::Uniform => vec![1.0; places.len()],
-            LightTarget::Profile(table) => {
-                let raw: Vec<f64> = places.iter().map(|place| table_at(table, *place)).collect();
+            LightTarget::Profile(light) => {
+                let raw: Vec<f64> = places.iter().map(|place| light.at(*place)).collect();
                 let counted = raw.iter().filter(|own| **own > 0.0).count().max(1) as f64;
                 let mean = raw.iter().sum::<f64>() / counted;
                 raw.into_iter().map(|own| if mean > 0.0 { own / mean } else { 0.0 }).collect()
             }
         };
+        let cells = feedback.zones.iter().map(|zone| zone.cells.clone()).collect();
         Self { places, wanted, cells }
     }
 

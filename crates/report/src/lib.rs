@@ -90,6 +90,7 @@ pub(crate) use manifest::Manifest;
 pub use manifest::report_files;
 pub use mesh::mesh_report;
 pub use output::OutputFile;
+pub use page::Standing;
 pub use rays::MeasuredRays;
 pub use recipe::Recipe;
 pub use record::{

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// A verdict as a status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Standing {
+pub enum Standing {
     /// Everything is as requested.
     Good,
     /// Something is not.

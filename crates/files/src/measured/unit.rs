@@ -1,6 +1,6 @@
 //! Units of measured values, in the names of columns.
 
-/// Endings of column names that are not a unit as written after `_`, and the units they stand for.
+/// Column endings whose unit is not simply what follows the last `_`.
 const ENDS: [(&str, &str); 4] =
     [("_cd_m2", "cd/m²"), ("_w_m2_sr", "W/(m² sr)"), ("_w_m2", "W/m²"), ("_w_sr", "W/sr")];
 

@@ -98,7 +98,7 @@ fn number(own: Uncertain) -> String {
 }
 
 fn limits(report: &OptimisationReport) -> Option<PagePart> {
-    let words = "At these places a limit or a bridge holds the length of the result.";
+    let words = "At these places a limit or a bridge holds the length of the result, within 1 %.";
     let list = Block::List { items: report.active_limits.clone() };
     (!report.active_limits.is_empty())
         .then(|| part("Limits that hold", vec![Block::Words { text: words.to_owned() }, list]))

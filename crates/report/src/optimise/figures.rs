@@ -2,7 +2,7 @@
 
 use crate::OutputFile;
 use crate::optimise::tables::light_columns;
-use crate::optimise::{JudgedStep, OptimisationReport};
+use crate::optimise::{JudgedStep, OptimisationReport, Purpose};
 use crate::png::{
     AxisScale, ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
 };
@@ -44,9 +44,9 @@ pub(super) fn figures(report: &OptimisationReport) -> Vec<OptimisationFigure> {
 /// Light of the zones before and after; of the checks where there are any.
 fn light(report: &OptimisationReport) -> LinePlot {
     let all = light_columns(report);
-    let is_check = |name: &str| name.contains("check");
-    let any = all.iter().any(|own| is_check(&own.0));
-    let shown = all.into_iter().filter(|own| is_check(&own.0) == any);
+    let is_check = |own: &(String, &JudgedStep)| own.1.measured.purpose != Purpose::Search;
+    let any = all.iter().any(is_check);
+    let shown = all.into_iter().filter(|own| is_check(own) == any);
     let curve = |(name, step): (String, &JudgedStep)| {
         let pairs = report.zones.iter().zip(&step.measured.zones);
         let points = pairs

@@ -3,10 +3,10 @@
 use crate::html::data::chart;
 use crate::html::frame::{Page, render};
 use crate::markdown::add;
+use crate::optimise::OptimisationReport;
 use crate::optimise::contents::{parts, verdict};
 use crate::optimise::figures::OptimisationFigure;
-use crate::optimise::{Ending, OptimisationReport};
-use crate::page::{PagePart, Plots, Standing};
+use crate::page::{PagePart, Plots};
 use lumiduct_base::error::Result;
 use lumiduct_base::text::markdown_page;
 use std::fmt::Write;
@@ -24,18 +24,7 @@ pub(super) fn html(report: &OptimisationReport, figures: &[OptimisationFigure]) 
         masthead: None,
         description: report.description.as_ref().map(|text| text.trim().to_owned()),
         verdict: verdict(report),
-        standing: match report.ending {
-            Ending::Reached => Standing::Good,
-            Ending::Interrupted => Standing::Open,
-            Ending::Unreachable(_)
-            | Ending::ContradictingLimits(_)
-            | Ending::ZeroWeight(_)
-            | Ending::HiddenByNoise(_)
-            | Ending::NoProgress(_)
-            | Ending::OutOfSteps(_)
-            | Ending::Refused(_)
-            | Ending::NotConfirmed(_) => Standing::Bad,
-        },
+        standing: report.ending.standing(),
         parts: before.into_iter().chain([pictures]).chain(after).collect(),
         footer: format!("lumiduct {}, optimisation {}", report.version, report.identity.name),
     };

@@ -1,5 +1,6 @@
 //! Records of an optimisation: what it is, every measurement, and how it ended.
 
+use crate::page::Standing;
 use lumiduct_core::plan::Request;
 use serde::{Deserialize, Serialize};
 
@@ -105,6 +106,22 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// Whether the optimisation did what it was asked for.
+    pub fn standing(&self) -> Standing {
+        match self {
+            Self::Reached => Standing::Good,
+            Self::Interrupted => Standing::Open,
+            Self::Unreachable(_)
+            | Self::ContradictingLimits(_)
+            | Self::ZeroWeight(_)
+            | Self::HiddenByNoise(_)
+            | Self::NoProgress(_)
+            | Self::OutOfSteps(_)
+            | Self::Refused(_)
+            | Self::NotConfirmed(_) => Standing::Bad,
+        }
+    }
+
     /// In words.
     pub fn words(&self) -> &str {
         match self {

@@ -82,7 +82,7 @@ pub struct Columns {
 
 impl Columns {
     /// Position of an element of a row across the face, mm.
-    pub(crate) fn place(&self, row: usize, column: usize) -> f64 {
+    pub fn place(&self, row: usize, column: usize) -> f64 {
         let first = if row % 2 == 1 { self.first + self.shift } else { self.first };
         first + column as f64 * self.pitch
     }

@@ -3,6 +3,7 @@
 use crate::spec::optimise::Vary;
 use lumiduct_core::plan::Request;
 use lumiduct_core::scene::SensorId;
+use lumiduct_core::scene::pattern::TableAlong;
 
 /// Sizes or pitches of a pattern along its face that give the wanted light along it.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,8 +16,8 @@ pub struct PatternFeedback {
     pub vary: Vary,
     /// Length of the face, mm.
     pub face_length: f64,
-    /// Positions and values of the length in the scene, mm from the start of the face; straight lines in between.
-    pub start: Vec<[f64; 2]>,
+    /// The length in the scene, mm, at positions from the start of the face.
+    pub start: TableAlong,
     /// Least and greatest value, mm.
     pub limits: [f64; 2],
     /// Least distance between the edges of neighbours, mm.
@@ -27,8 +28,8 @@ pub struct PatternFeedback {
     pub sensor: SensorId,
     /// Its view, if it separates directions.
     pub view: Option<usize>,
-    /// Position of every cell of the sensor along the face, mm from its start.
-    pub cell_places: Vec<f64>,
+    /// Where it measures along the face, in the order of the positions: at least two.
+    pub zones: Vec<FeedbackZone>,
     /// The wanted light.
     pub target: LightTarget,
     /// Smallest over largest ratio of measured to wanted light that is to be reached, 1.
@@ -58,9 +59,13 @@ pub enum LawKind {
     Spline(usize),
 }
 
-impl PatternFeedback {
-    /// Cells closer than this share of the length of the face are one zone, 1.
-    pub const SAME_ZONE: f64 = 1e-6;
+/// Cells of a sensor at the same position along a face.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeedbackZone {
+    /// The position, mm from the start of the face.
+    pub along: f64,
+    /// The cells, row by row from 0.
+    pub cells: Vec<usize>,
 }
 
 /// The wanted light along a face, up to a common factor.
@@ -68,6 +73,6 @@ impl PatternFeedback {
 pub enum LightTarget {
     /// The same everywhere.
     Uniform,
-    /// Positions, mm, and light; straight lines in between.
-    Profile(Vec<[f64; 2]>),
+    /// Light at positions, mm.
+    Profile(TableAlong),
 }

@@ -4,16 +4,13 @@ use crate::keys::{Key, Places};
 use crate::problems::Problems;
 use crate::texts::{Origin, TextId};
 use csv::{ReaderBuilder, StringRecord, Trim};
+use lumiduct_core::scene::pattern::TableAlong;
 
 /// The columns of a profile.
 const COLUMNS: [&str; 2] = ["along_mm", "light"];
 
-/// Positions, mm, and light; `None` where the table is not valid, which has then been noted.
-pub(super) fn rows(
-    places: &Places,
-    table: TextId,
-    problems: &mut Problems,
-) -> Option<Vec<[f64; 2]>> {
+/// Light at positions, mm; `None` where the table is not valid, which has then been noted.
+pub(super) fn rows(places: &Places, table: TextId, problems: &mut Problems) -> Option<TableAlong> {
     let text = places.sources().get(table).text();
     let mut refuse = |start: usize, message: &str| {
         let line = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
@@ -53,10 +50,10 @@ pub(super) fn rows(
         }
         rows.push([place, value]);
     }
-    if rows.is_empty() {
-        return refuse(0, "there are no rows");
+    match TableAlong::table(rows) {
+        None => refuse(0, "there are no rows"),
+        found => found,
     }
-    Some(rows)
 }
 
 fn number(record: &StringRecord, column: usize) -> Option<f64> {

@@ -6,15 +6,18 @@ use crate::lower::patterns::layout::law_knots;
 use crate::problems::{Problems, name_hint};
 use crate::spec::optimise::{LawKindSpec, OptimisationSpec, PatternFeedbackSpec, SplineSpec, Vary};
 use crate::spec::pattern::AlongSpec;
-use crate::study::optimisation::feedback::{LawKind, LightTarget, PatternFeedback};
+use crate::study::optimisation::feedback::{FeedbackZone, LawKind, LightTarget, PatternFeedback};
 use crate::study::rules::check_key;
 use lumiduct_core::plan::Request;
+use lumiduct_core::scene::pattern::TableAlong;
 use lumiduct_core::scene::{FaceId, Seeing, SensorId, SensorKind, SurfaceSensor};
 use std::path::Path;
 
 /// Layouts whose pitch can change along a face.
 const LAYOUTS: [&str; 3] = ["row", "grid", "staggered"];
 
+/// Cells closer than this share of the length of the face are one zone, 1.
+const SAME_ZONE: f64 = 1e-6;
 /// Most zones: the work of a step grows with their third power.
 const MOST_ZONES: usize = 400;
 
@@ -51,9 +54,10 @@ pub(super) fn feedback(
     let length = varied(spec, &table, &base.places, problems);
     let (id, surface) = sensor?;
     let view = view(spec, surface, problems)?;
-    let cell_places = zones(surface, face, base, problems)?;
+    let zones = zones(surface, face, base, problems)?;
     let face_length = base.scene.face_length(face)?;
     let (key, along) = length?;
+    let start = TableAlong::table(knots(&along, face_length))?;
     check_bridge(spec, problems)?;
     let efficiency = spec.efficiency.clone();
     Some(PatternFeedback {
@@ -61,7 +65,7 @@ pub(super) fn feedback(
         key: key.to_string(),
         vary: spec.vary,
         face_length,
-        start: knots(&along, face_length),
+        start,
         limits: [spec.limits.from_mm, spec.limits.to_mm],
         bridge: spec.bridge_mm,
         law: match spec.law {
@@ -70,7 +74,7 @@ pub(super) fn feedback(
         },
         sensor: id,
         view,
-        cell_places,
+        zones,
         target,
         min_over_max: spec.min_over_max,
         efficiency: efficiency.unwrap_or_else(|| format!("{}.efficiency", spec.sensor)),
@@ -240,13 +244,13 @@ fn view(
     }
 }
 
-/// Positions of the cells along the face; refused where they give no zones on it.
+/// The zones of a sensor along the face; refused where it has none, or too many.
 fn zones(
     sensor: &SurfaceSensor,
     face: FaceId,
     base: &Job,
     problems: &mut Problems,
-) -> Option<Vec<f64>> {
+) -> Option<Vec<FeedbackZone>> {
     let (places, length) = (base.scene.cell_places(sensor, face), base.scene.face_length(face));
     let Some((places, length)) = places.zip(length) else {
         let message = "its cells are no columns and rows of a flat or round surface";
@@ -256,11 +260,6 @@ fn zones(
     let [low, high] = places
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(*at), high.max(*at)]);
-    if high - low <= 1e-9 * length {
-        let message = "all of its cells lie at one place along the face of the pattern";
-        problems.error(&at("sensor"), message).hint("divide it along the face");
-        return None;
-    }
     if low < 0.0 || high > length {
         let message = format!(
             "its cells lie at {low:.4} to {high:.4} mm along the face, which is {length:.4} mm long"
@@ -268,11 +267,13 @@ fn zones(
         problems.error(&at("sensor"), message).hint("place it over the face, or make it shorter");
         return None;
     }
-    let mut sorted = places.clone();
-    sorted.sort_by(f64::total_cmp);
-    let apart =
-        sorted.windows(2).filter(|pair| pair[1] - pair[0] > PatternFeedback::SAME_ZONE * length);
-    let count = apart.count() + 1;
+    let zones = grouped(&places, SAME_ZONE * length);
+    let count = zones.len();
+    if count < 2 {
+        let message = "all of its cells lie at one place along the face of the pattern";
+        problems.error(&at("sensor"), message).hint("divide it along the face");
+        return None;
+    }
     if count > MOST_ZONES {
         let message = format!(
             "its cells make {count} zones along the face, and at most {MOST_ZONES} are possible"
@@ -281,7 +282,22 @@ fn zones(
         problems.error(&at("sensor"), message).hint(hint);
         return None;
     }
-    Some(places)
+    Some(zones)
+}
+
+/// Cells by their positions along a face, mm; those within `same` of the first one of a zone belong to it.
+fn grouped(places: &[f64], same: f64) -> Vec<FeedbackZone> {
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    order.sort_by(|one, other| places[*one].total_cmp(&places[*other]));
+    let mut zones: Vec<FeedbackZone> = Vec::new();
+    for cell in order {
+        let along = places[cell];
+        match zones.last_mut() {
+            Some(zone) if along - zone.along <= same => zone.cells.push(cell),
+            _ => zones.push(FeedbackZone { along, cells: vec![cell] }),
+        }
+    }
+    zones
 }
 
 /// The number of paths, without which no measurement repeats.
@@ -309,5 +325,19 @@ fn knots(along: &AlongSpec, length: f64) -> Vec<[f64; 2]> {
         AlongSpec::Same(value) => vec![[0.0, *value]],
         AlongSpec::Table(knots) => knots.clone(),
         AlongSpec::Law(law) => law_knots(law, length),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_near_the_first_of_a_zone_belong_to_it() {
+        // Neighbours within the distance would chain into one zone without end.
+        let zones = grouped(&[3.0, 1.0, 1.6, 2.2, 1.0], 1.0);
+        let found: Vec<(f64, &[usize])> =
+            zones.iter().map(|zone| (zone.along, zone.cells.as_slice())).collect();
+        assert_eq!(found, [(1.0, &[1, 4, 2][..]), (2.2, &[3, 0])]);
     }
 }

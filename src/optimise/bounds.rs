@@ -1,8 +1,8 @@
-//! The room of a length: its limits, and the bridges between neighbours. Also the element field of a scene as a list.
+//! The bounds of a length: its limits, and the bridges between neighbours. Also the element field of a scene as a list.
 
 use crate::optimise::feedback::{PER_MM, rounded};
 use crate::optimise::law::SizeLaw;
-use lumiduct_core::scene::pattern::{Columns, ElementField, ElementOutline};
+use lumiduct_core::scene::pattern::{ElementField, ElementOutline};
 use lumiduct_core::scene::shape::ChartRect;
 use lumiduct_core::scene::{FaceId, Scene};
 use lumiduct_input::{PatternFeedback, Vary};
@@ -28,10 +28,10 @@ pub(crate) struct LengthBounds {
     face_length: f64,
 }
 
-/// Whether a length is at an end of its room.
+/// The bound that a length meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RoomEnd {
-    Inside,
+pub(crate) enum BoundMet {
+    None,
     Least,
     Greatest,
 }
@@ -46,21 +46,21 @@ pub(crate) fn field<'a>(scene: &'a Scene, name: &str) -> Option<(&'a ElementFiel
 impl LengthBounds {
     pub(crate) fn of(feedback: &PatternFeedback, scene: &Scene) -> Self {
         let [from, to] = feedback.limits;
-        let mut room = Self {
+        let mut bounds = Self {
             vary: feedback.vary,
             limits: [from, to],
             rows: Vec::new(),
             face_length: feedback.face_length,
         };
-        let Some((field, face)) = field(scene, &feedback.pattern) else { return room };
-        let Some(rect) = scene.face_rect(face) else { return room };
+        let Some((field, face)) = field(scene, &feedback.pattern) else { return bounds };
+        let Some(rect) = scene.face_rect(face) else { return bounds };
         let start = rect.min.y;
         let places: Vec<f64> = (0..field.rows.count()).map(|row| field.rows.place(row)).collect();
         match feedback.vary {
             Vary::Pitch => {
                 let longest = places.iter().map(|place| field.outline.size(*place).y);
                 let least = from.max(longest.fold(0.0, f64::max) + feedback.bridge);
-                room.limits[0] = rounded_up(least);
+                bounds.limits[0] = rounded_up(least);
             }
             Vary::Diameter => {
                 // Elements keep their bridges, and stay on the face.
@@ -68,14 +68,14 @@ impl LengthBounds {
                     let edge = 2.0 * edge(field, (row, places[row]), rect);
                     rounded_down(to.min(gap(field, &places, row) - feedback.bridge).min(edge))
                 };
-                room.rows =
+                bounds.rows =
                     places.iter().enumerate().map(|(row, at)| [at - start, cap(row)]).collect();
             }
             Vary::Radius | Vary::Depth | Vary::Height => {
-                room.rows = places.iter().map(|at| [at - start, to]).collect();
+                bounds.rows = places.iter().map(|at| [at - start, to]).collect();
             }
         }
-        room
+        bounds
     }
 
     /// Positions of the first and the last element along the face, mm; of the face where they move.
@@ -126,15 +126,15 @@ impl LengthBounds {
         if caps.is_finite() { caps.min(self.limits[1]) } else { self.limits[1] }
     }
 
-    /// A length at a point of the law brought into its room, and whether that is an end of it.
-    pub(crate) fn held(&self, law: &SizeLaw, point: usize, value: f64) -> (f64, RoomEnd) {
+    /// Clamps a length at a point of the law to its bounds, and says which of them it met.
+    pub(crate) fn clamped(&self, law: &SizeLaw, point: usize, value: f64) -> (f64, BoundMet) {
         let [least, greatest] = self.bounds(law, point);
         if value <= least {
-            (least, RoomEnd::Least)
+            (least, BoundMet::Least)
         } else if value >= greatest {
-            (greatest, RoomEnd::Greatest)
+            (greatest, BoundMet::Greatest)
         } else {
-            (value, RoomEnd::Inside)
+            (value, BoundMet::None)
         }
     }
 
@@ -152,7 +152,7 @@ impl LengthBounds {
     pub(crate) fn table(&self, law: &SizeLaw, values: &[f64]) -> String {
         let mut text = String::from("[");
         for [place, cap] in self.written() {
-            // The room ends where a cap lies below the least length; the caller has refused that.
+            // There are no bounds where a cap lies below the least length; the caller has refused that.
             let length = law.at(values, place).min(cap).max(self.limits[0].min(cap));
             let comma = if text.len() > 1 { ", " } else { "" };
             _ = write!(text, "{comma}[{}, {}]", rounded(place), rounded(length));
@@ -208,13 +208,12 @@ fn gap(field: &ElementField, places: &[f64], row: usize) -> f64 {
 
 /// Distance from the middles of a row's elements to the nearest edge of the face, mm.
 fn edge(field: &ElementField, (row, at): (usize, f64), rect: ChartRect) -> f64 {
-    let Columns { first, pitch, count, shift } = field.columns;
+    let columns = field.columns;
     let along = (at - rect.min.y).min(rect.max.y - at);
     if field.period.is_some() {
         return along;
     }
-    let from = if row % 2 == 1 { first + shift } else { first };
-    let to = from + pitch * count.saturating_sub(1) as f64;
+    let [from, to] = [0, columns.count.saturating_sub(1)].map(|column| columns.place(row, column));
     along.min(from - rect.min.x).min(rect.max.x - to)
 }
 
@@ -263,7 +262,7 @@ pub(crate) fn elements(scene: &Scene, name: &str) -> (Vec<FoundElement>, Element
 mod tests {
     use super::*;
     use glam::DVec2;
-    use lumiduct_core::scene::pattern::{RowPositions, TableAlong};
+    use lumiduct_core::scene::pattern::{Columns, RowPositions, TableAlong};
 
     fn field(columns: Columns, period: Option<f64>) -> ElementField {
         ElementField {
@@ -283,8 +282,9 @@ mod tests {
         let found = sampled(&rows, 500);
         assert!(found.len() <= 501, "{}", found.len());
         assert_eq!((found[0], found.last()), ([0.0, 9.0], Some(&[3000.0, 2.0])));
+        let table = TableAlong::table(found).unwrap();
         for [place, cap] in &rows {
-            assert!(crate::optimise::law::table_at(&found, *place) <= cap + 1e-12, "{place}");
+            assert!(table.at(*place) <= cap + 1e-12, "{place}");
         }
         assert!(sampled(&rows, rows.len()) == rows);
     }

@@ -48,6 +48,8 @@ pub mod stream {
     pub(crate) const BACKWARD_POINTS: u64 = 14 << 32;
     /// Sobol points of gather paths that end in records.
     pub(crate) const GATHER_POINTS: u64 = 15 << 32;
+    /// Cells of a sensor that trials of gather paths take.
+    pub(crate) const TRIED_CELLS: u64 = 16 << 32;
     /// Gather paths of baselines.
     pub const BASELINE_PATHS: u64 = 5 << 32;
     /// Their choices at interfaces.

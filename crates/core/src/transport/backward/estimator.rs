@@ -7,7 +7,7 @@
 //! sensors, and all count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::{Dimension, Points, Sampler, StratumShares, stream};
+use crate::rng::{Points, Sampler, StratumShares, stream};
 use crate::scene::SensorId;
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::backward::paths::{Backward, Weights};
@@ -17,7 +17,6 @@ use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::MIN_LIT_GROUPS;
 use crate::transport::tally::work;
 use crate::transport::task::Task;
-use crate::transport::trial::strata::PAIR;
 use crate::transport::trial::{BATCHES, SEED, Trials, Tried, TriedBatches};
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Layout, Path, Readings};
@@ -48,11 +47,9 @@ impl<'s> Backward<'s> {
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, batch);
         for (sensor, (id, _)) in self.sensors.iter().enumerate() {
-            let of_sensor = stream::BACKWARD_POINTS + id.index() as u64;
-            // Two batches take the same strata, if they do not take all.
-            let mut pair = Sampler::for_path(self.seed, of_sensor, batch / PAIR as u64);
-            let shares = self.shares(sensor).turned(pair.one(Dimension::GatherCell));
+            let shares = self.shares_of_batch(sensor, batch);
             readings.sensors[id.index()].paths = shares.paths;
+            let of_sensor = stream::BACKWARD_POINTS + id.index() as u64;
             let mut points = Points::of_batch((self.seed, of_sensor, batch), shares.paths);
             for place in 0..shares.paths {
                 if pace.spend(1).is_break() {

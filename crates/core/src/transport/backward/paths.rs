@@ -2,7 +2,7 @@
 //!
 //! This module traces nothing.
 
-use crate::rng::{Points, StratumShares};
+use crate::rng::{Dimension, Points, Sampler, StratumShares, stream};
 use crate::scene::{Arrivals, Scene, SensorId, Strata};
 use crate::transport::Layout;
 use crate::transport::connect::passage::RecordPlaces;
@@ -10,7 +10,7 @@ use crate::transport::connect::sensors::SensorTargets;
 use crate::transport::connect::sources::{SourcePoint, SourceTargets};
 use crate::transport::connect::vertex::TurnAt;
 use crate::transport::connect::weights::Sharing;
-use crate::transport::trial::strata::TriedStrata;
+use crate::transport::trial::strata::{PAIR, TriedStrata};
 use crate::transport::walk::emitters::Emitters;
 
 /// Gather paths of a batch from each sensor where no number is given: they measure their work.
@@ -135,6 +135,17 @@ impl<'s> Backward<'s> {
             None => StratumShares::of(strata, self.paths),
             Some(of_run) => StratumShares::of(strata, of_run).for_trial(self.paths),
         }
+    }
+
+    /// The same in the strata that a batch takes: in a trial two batches take the same.
+    pub(crate) fn shares_of_batch(&self, sensor: usize, batch: u64) -> StratumShares {
+        let shares = self.shares(sensor);
+        if self.of_run.is_none() {
+            return shares;
+        }
+        let of_sensor = stream::TRIED_CELLS + self.sensors[sensor].0.index() as u64;
+        let mut pair = Sampler::for_path(self.seed, of_sensor, batch / PAIR as u64);
+        shares.turned(pair.one(Dimension::GatherCell))
     }
 
     /// The strata of a sensor that a trial takes, by its place among the sensors; `None` if the run will not have paths in all.

@@ -3,7 +3,7 @@
 //! The same pairs give estimates of second, fourth and sixth order, E1, E0 and E00 (`kernel`). The value is E0. For smooth
 //! light its bias is a small part of E0 - E1. An edge of the light inside the windows leaves the most: if the bias is
 //! proportional to their size, 2/3 of E0 - E1 remains in E0, which is 2.8 times E00 - E0. The stated bias is therefore 2.8
-//! times the sum of |E00 - E0| and its standard error, within 1/4 and 2/3 of |E0 - E1|; where E0 - E1 is noise, half of the
+//! times |E00 - E0| or its standard error, whichever is larger, within 1/4 and 2/3 of |E0 - E1|; where E0 - E1 is noise, half of the
 //! root of the squares of that difference and its error. A bias in proportion to the window would also have changed E0 from
 //! the stage before, which limits it. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not converge, and the bias
 //! is not resolved.
@@ -167,7 +167,7 @@ fn bias_share(lower: &Tally, higher: &Tally) -> (f64, Resolution) {
         return (seen.max(1.0), Resolution::NotResolved);
     }
     let [of_lower, of_higher] = EDGE;
-    let at_most = (higher.mean().abs() + higher.std_error()) / size;
+    let at_most = higher.mean().abs().max(higher.std_error()) / size;
     ((of_higher * at_most).clamp(LEAST_SHARE, of_lower), Resolution::Resolved)
 }
 
@@ -175,8 +175,8 @@ fn bias_share(lower: &Tally, higher: &Tally) -> (f64, Resolution) {
 /// docs/method.md, eq. (32).
 fn left_by_stages([before, now]: [&Tally; 2], shrinks: u32) -> f64 {
     let ratio = SQRT_2.powi(shrinks as i32);
-    let apart = (before.mean() - now.mean()).abs() + before.std_error().hypot(now.std_error());
-    apart / (ratio - 1.0)
+    let apart = (before.mean() - now.mean()).abs();
+    apart.max(before.std_error().hypot(now.std_error())) / (ratio - 1.0)
 }
 
 /// The least bias, lm or W, of a flux that differs from that of photons by `off`, with the error of the latter: 0 if noise

@@ -5,3 +5,4 @@ pub(crate) mod convex;
 pub(crate) mod hit;
 pub(crate) mod inside;
 pub(crate) mod on;
+pub(crate) mod tree;

@@ -6,8 +6,9 @@
 //! the ray starts on, the root at the start is excluded. Surfaces within [`Scene::tolerance`] of
 //! the nearest hit are one event.
 
-use crate::scene::crossing::accel::{Accel, Tree};
+use crate::scene::crossing::accel::Accel;
 use crate::scene::crossing::hit::{Hits, Nearest, PrimHit, StartSide};
+use crate::scene::crossing::tree::Tree;
 use crate::scene::mesh::TriangleLine;
 use crate::scene::shape::{Crossing, CrossingQuery, RayStart, Toward};
 use crate::scene::{Inside, Owner, PrimId, Ray, Scene, StartSurfaces, Surface};

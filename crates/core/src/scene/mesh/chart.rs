@@ -16,14 +16,14 @@ impl Mesh {
     /// or if facets face opposite ways.
     pub(crate) fn chart_plane(&self, face: usize) -> Option<Frame> {
         let triangles = || self.face_triangles(face).iter().map(|index| *index as usize);
-        let normal = triangles().map(|triangle| area_vector(self.corners[triangle])).sum::<DVec3>();
+        let normal = triangles().map(|triangle| area_vector(self.corners(triangle))).sum::<DVec3>();
         let normal = normal.try_normalize()?;
         let center = triangles()
-            .map(|triangle| self.area(triangle) * self.corners[triangle].iter().sum::<DVec3>())
+            .map(|triangle| self.area(triangle) * self.corners(triangle).iter().sum::<DVec3>())
             .sum::<DVec3>()
             / (3.0 * self.face_area(face));
         let flat = triangles().all(|triangle| {
-            let corners = self.corners[triangle];
+            let corners = self.corners(triangle);
             area_vector(corners).dot(normal) >= 0.0
                 && corners.iter().all(|p| (*p - center).dot(normal).abs() <= self.flatness)
         });
@@ -52,7 +52,7 @@ impl Mesh {
 
     fn outlines(&self, face: usize, plane: &Frame) -> impl Iterator<Item = [DVec2; 3]> {
         self.face_triangles(face).iter().map(move |triangle| {
-            self.corners[*triangle as usize].map(|p| plane.point_to_local(p).truncate())
+            self.corners(*triangle as usize).map(|p| plane.point_to_local(p).truncate())
         })
     }
 }

@@ -120,7 +120,7 @@ mod tests {
             for triangle in 0..mesh.triangle_count() {
                 let corners = mesh.corners(triangle);
                 let ours = mesh.crossing(triangle, &ray);
-                let expected = by_definition(corners, &ray);
+                let expected = by_definition(&corners, &ray);
                 let Some((t, weights)) = expected else {
                     // Allowed only where rounding decides: none of these rays is that close to an
                     // edge.
@@ -131,7 +131,7 @@ mod tests {
                 hits += 1;
                 assert!(weights.min_element() > 1e-12);
                 assert!((ours.t - t).abs() < 1e-9, "{} {t}", ours.t);
-                assert_eq!(ours.toward, Toward::of(ray.dir(), area_vector(*corners)));
+                assert_eq!(ours.toward, Toward::of(ray.dir(), area_vector(corners)));
             }
         }
         assert!(hits > 50, "{hits}");
@@ -140,7 +140,7 @@ mod tests {
     /// Points of a closed mesh at which rounding errors are most likely.
     fn delicate_points(mesh: &Mesh) -> Vec<DVec3> {
         let of_triangle = |triangle: usize| {
-            let [a, b, c] = *mesh.corners(triangle);
+            let [a, b, c] = mesh.corners(triangle);
             let on_edge =
                 |from: DVec3, to: DVec3| [0.5, 0.1, 1.0 / 3.0].map(|s| from + s * (to - from));
             [vec![a, b, c], on_edge(a, b).into(), on_edge(b, c).into(), on_edge(c, a).into()]

@@ -26,8 +26,9 @@ const FLATNESS: f64 = 1.0 / (1u64 << 22) as f64;
 /// A mesh placed in the scene.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// Only the data of the inner loop: 72 bytes per triangle.
-    corners: Vec<[DVec3; 3]>,
+    /// Positions of the vertices, mm, and those of each triangle: shared, so that more of a mesh stays in the cache.
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
     facet_normals: Vec<DVec3>,
     corner_normals: Option<Vec<[DVec3; 3]>>,
     smooth_ids: Vec<u32>,
@@ -62,53 +63,51 @@ impl Mesh {
         // Vertex by vertex, so that triangles share a common vertex to the last bit.
         let positions: Vec<DVec3> =
             mesh.positions.iter().map(|position| at.point_to_world(*position)).collect();
-        let corners: Vec<[DVec3; 3]> = mesh
-            .triangles
-            .iter()
-            .map(|triangle| triangle.map(|index| positions[index as usize]))
-            .collect();
+        let triangles = mesh.triangles.clone();
+        let corners = |triangle: &[u32; 3]| triangle.map(|index| positions[index as usize]);
         let corner_normals: Option<Vec<[DVec3; 3]>> = mesh
             .normals
             .as_ref()
             .map(|all| all.iter().map(|normals| normals.map(|n| at.to_world(n))).collect());
-        let facet_normals = corners
+        let facet_normals = triangles
             .iter()
             .enumerate()
-            .map(|(triangle, corners)| {
-                facet_normal(corners, corner_normals.as_ref().map(|all| &all[triangle]))
+            .map(|(triangle, own)| {
+                facet_normal(&corners(own), corner_normals.as_ref().map(|all| &all[triangle]))
             })
             .collect();
         let flatness = FLATNESS * mesh.bounds().largest_coordinate();
         Self {
-            faces: faces(mesh, &corners),
+            faces: faces(mesh, |triangle| corners(&triangles[triangle])),
             smooth_ids: patch::smooth_ids(mesh, flatness),
             face_of: mesh.face_of.clone(),
-            corners,
             facet_normals,
             corner_normals,
             flatness,
+            triangles,
+            positions,
         }
     }
 
     /// Number of triangles; they are numbered from 0.
     pub fn triangle_count(&self) -> usize {
-        self.corners.len()
+        self.triangles.len()
     }
 
     /// The three vertices of a triangle, mm; counter-clockwise seen from outside.
     #[inline]
-    pub(crate) fn corners(&self, triangle: usize) -> &[DVec3; 3] {
-        &self.corners[triangle]
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|index| self.positions[index as usize])
     }
 
     /// A box around a triangle, mm.
     pub fn bounds(&self, triangle: usize) -> Aabb {
-        Aabb::of(self.corners[triangle])
+        Aabb::of(self.corners(triangle))
     }
 
     /// Area of a triangle, mm².
     pub(crate) fn area(&self, triangle: usize) -> f64 {
-        0.5 * area_vector(self.corners[triangle]).length()
+        0.5 * area_vector(self.corners(triangle)).length()
     }
 
     /// Where the line of a ray crosses a triangle. Edges and vertices belong to all of their
@@ -120,9 +119,9 @@ impl Mesh {
     /// Where a line crosses a triangle.
     #[inline(always)]
     pub fn crossing_of(&self, triangle: usize, line: &TriangleLine) -> Option<Crossing> {
-        let corners = &self.corners[triangle];
-        let toward = line.passes(corners)?;
-        Some(Crossing { t: line.distance(corners, self.facet_normals[triangle]), toward })
+        let corners = self.corners(triangle);
+        let toward = line.passes(&corners)?;
+        Some(Crossing { t: line.distance(&corners, self.facet_normals[triangle]), toward })
     }
 
     /// Unit normal of a triangle's plane, outward.
@@ -137,7 +136,7 @@ impl Mesh {
     pub(crate) fn shading_normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let facet = self.facet_normals[triangle];
         let Some(normals) = &self.corner_normals else { return facet };
-        let weights = weights(&self.corners[triangle], facet, point);
+        let weights = weights(&self.corners(triangle), facet, point);
         let [a, b, c] = normals[triangle];
         let normal = (weights.x * a + weights.y * b + weights.z * c).normalize_or_zero();
         if normal.dot(facet) > 0.0 { normal } else { facet }
@@ -182,7 +181,7 @@ impl Mesh {
         let triangle = face.triangles[index] as usize;
         // The remainder of the first number is again uniform within the triangle.
         let rest = ((wanted - before) / (face.area_up_to[index] - before)).clamp(0.0, 1.0);
-        let [a, b, c] = self.corners[triangle];
+        let [a, b, c] = self.corners(triangle);
         // Uniform over a triangle: Turk, Graphics Gems (1990) 24.
         let root = rest.sqrt();
         let point = (1.0 - root) * a + root * (1.0 - u[1]) * b + root * u[1] * c;
@@ -209,7 +208,7 @@ fn weights([a, b, c]: &[DVec3; 3], facet: DVec3, point: DVec3) -> DVec3 {
     weights.max(DVec3::ZERO)
 }
 
-fn faces(mesh: &TriangleMesh, corners: &[[DVec3; 3]]) -> Vec<MeshFace> {
+fn faces(mesh: &TriangleMesh, corners: impl Fn(usize) -> [DVec3; 3]) -> Vec<MeshFace> {
     let empty = |name: &String| MeshFace {
         name: name.clone(),
         triangles: Vec::new(),
@@ -220,7 +219,7 @@ fn faces(mesh: &TriangleMesh, corners: &[[DVec3; 3]]) -> Vec<MeshFace> {
         let face = &mut faces[*face as usize];
         let before = face.area_up_to.last().copied().unwrap_or(0.0);
         face.triangles.push(triangle as u32);
-        face.area_up_to.push(before + 0.5 * area_vector(corners[triangle]).length());
+        face.area_up_to.push(before + 0.5 * area_vector(corners(triangle)).length());
     }
     faces
 }
@@ -245,7 +244,7 @@ mod tests {
         let mesh = Mesh::new(&sample, &Frame::WORLD);
         (0..mesh.triangle_count())
             .map(|triangle| {
-                let [a, b, c] = *mesh.corners(triangle);
+                let [a, b, c] = mesh.corners(triangle);
                 let point = 0.5 * a + 0.3 * b + 0.2 * c;
                 let gradient = DVec3::new(0.25 * point.x, point.y, point.z);
                 mesh.shading_normal(triangle, point).distance(gradient.normalize())
@@ -267,7 +266,7 @@ mod tests {
     fn interpolated_normals_of_a_sphere_are_exact() {
         let mesh = Mesh::new(&icosphere(3.0, 1, Normals::Smooth), &Frame::WORLD);
         for triangle in 0..mesh.triangle_count() {
-            let [a, b, c] = *mesh.corners(triangle);
+            let [a, b, c] = mesh.corners(triangle);
             let point = 0.7 * a + 0.1 * b + 0.2 * c;
             let normal = mesh.shading_normal(triangle, point);
             assert!(normal.distance(point.normalize()) < 1e-14);

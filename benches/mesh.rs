@@ -46,11 +46,11 @@ fn main() {
     println!("Nanoseconds per ray, {RAYS} rays\n");
     println!("| triangles | beside ours | it | ours | it/ours |");
     println!("|--:|---|--:|--:|--:|");
-    RODS.into_iter().for_each(rod);
+    RODS.into_iter().for_each(print_rows);
 }
 
 /// Rows of a rod with this many facets around it and rings along it.
-fn rod([facets, rings]: [u32; 2]) {
+fn print_rows([facets, rings]: [u32; 2]) {
     let rod = rod_mesh(1.5, B2.length, facets, rings);
     let mesh = Mesh::new(&rod, &Frame::WORLD);
     let scene = mesh_scene(&B2, mesh.clone());

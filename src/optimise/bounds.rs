@@ -28,14 +28,6 @@ pub(crate) struct LengthBounds {
     face_length: f64,
 }
 
-/// The bound that a length meets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum BoundMet {
-    None,
-    Least,
-    Greatest,
-}
-
 /// The field of a pattern or a relief, and its face.
 pub(crate) fn field<'a>(scene: &'a Scene, name: &str) -> Option<(&'a ElementField, FaceId)> {
     let pattern = scene.patterns.iter().find(|own| own.name == name);
@@ -87,11 +79,11 @@ impl LengthBounds {
     }
 
     /// The least and the greatest length at a point of the law, mm.
-    pub(crate) fn bounds(&self, law: &SizeLaw, point: usize) -> [f64; 2] {
+    pub(crate) fn at(&self, law: &SizeLaw, point: usize) -> [f64; 2] {
         [self.limits[0], self.greatest(law, point)]
     }
 
-    /// Why no length has room; `None` where all have.
+    /// Why no length meets the bounds; `None` where some do.
     pub(crate) fn contradiction(&self) -> Option<String> {
         let [from, to] = self.limits;
         if from > to {
@@ -126,16 +118,16 @@ impl LengthBounds {
         if caps.is_finite() { caps.min(self.limits[1]) } else { self.limits[1] }
     }
 
-    /// Clamps a length at a point of the law to its bounds, and says which of them it met.
-    pub(crate) fn clamped(&self, law: &SizeLaw, point: usize, value: f64) -> (f64, BoundMet) {
-        let [least, greatest] = self.bounds(law, point);
-        if value <= least {
-            (least, BoundMet::Least)
-        } else if value >= greatest {
-            (greatest, BoundMet::Greatest)
-        } else {
-            (value, BoundMet::None)
-        }
+    /// A length at a point of the law, clamped to its bounds, mm.
+    pub(crate) fn clamp(&self, law: &SizeLaw, point: usize, value: f64) -> f64 {
+        let [least, greatest] = self.at(law, point);
+        value.min(greatest).max(least)
+    }
+
+    /// Whether the bounds leave a length at a point of the law room on both sides.
+    pub(crate) fn leave_room(&self, law: &SizeLaw, point: usize, value: f64) -> bool {
+        let [least, greatest] = self.at(law, point);
+        least < value && value < greatest
     }
 
     /// Places at which lengths are written, mm along the face, and the greatest length there.
@@ -152,7 +144,7 @@ impl LengthBounds {
     pub(crate) fn table(&self, law: &SizeLaw, values: &[f64]) -> String {
         let mut text = String::from("[");
         for [place, cap] in self.written() {
-            // There are no bounds where a cap lies below the least length; the caller has refused that.
+            // A cap below the least length contradicts it; the caller has refused that.
             let length = law.at(values, place).min(cap).max(self.limits[0].min(cap));
             let comma = if text.len() > 1 { ", " } else { "" };
             _ = write!(text, "{comma}[{}, {}]", rounded(place), rounded(length));

@@ -8,7 +8,7 @@ use lumiduct_report::optimise::{Ending, JudgedStep};
 pub(crate) struct Obstacle {
     /// Every deviation lies within its error.
     is_noise: bool,
-    /// Points at the end of their room that had to go further: place and length, mm.
+    /// Points at a bound that had to go further: place and length, mm.
     held: Vec<[f64; 2]>,
 }
 

@@ -82,8 +82,8 @@ impl SumOfSquares {
     fn common_step(&self, changes: &[f64], bounds: &[[f64; 2]]) -> f64 {
         let fall: f64 = (0..changes.len()).map(|place| self.fall(changes, place)).sum();
         let curvature: f64 = self.quadratic.iter().flatten().sum();
-        let room = changes.iter().zip(bounds);
-        let [least, most] = room
+        let pairs = changes.iter().zip(bounds);
+        let [least, most] = pairs
             .fold([f64::NEG_INFINITY, f64::INFINITY], |[least, most], (own, [low, high])| {
                 [least.max(low - own), most.min(high - own)]
             });
@@ -174,7 +174,7 @@ mod tests {
         // The light is met, so nothing is held from it.
         assert!(found[3].change == 0.0 && !found[3].is_held, "{found:?}");
         assert!((found[0].change + 0.6).abs() < 0.05, "{found:?}");
-        // Both ends of the room: the rest cannot follow.
+        // At both bounds: the rest cannot follow.
         let found = changes(&identity(), [-0.3, -0.1, 0.1, 0.3].map(Some), [[-0.1, 0.0]; 4]);
         assert!(found[3].is_held && found[0].is_held, "{found:?}");
     }

@@ -1,4 +1,4 @@
-//! How the light of zones answers to openings at the points of a law: a matrix that is learned from the measured designs.
+//! How the light of zones answers to openings at the points of a law: a matrix that is fitted to the measured designs.
 //!
 //! Light leaves a hole aslant and meets a sensor beside it, and what one hole takes the others lack. So the light of a zone follows
 //! openings elsewhere too (docs/optimise.md, equations 1 and 2). The first guess is the share of each point in the lengths at the zone, and
@@ -12,7 +12,7 @@ use crate::optimise::law::SizeLaw;
 const SHARE_DEVIATION: f64 = 0.5;
 /// Deviation of the linear model, as a share of the change of the openings, 1.
 const NONLINEARITY: f64 = 0.02;
-/// Least change of the openings, as a logarithm, from which something is learned.
+/// Least change of the openings, as a logarithm, from which the fit takes something.
 const LEAST_CHANGE: f64 = 1e-6;
 
 /// A measured design: openings at the points of the law, as logarithms, and the light of the zones.
@@ -44,7 +44,7 @@ pub(crate) fn fit_response(
             covariance[place][place] += variance;
         }
         for pair in designs.windows(2) {
-            learn(&mut row, &mut covariance, [&pair[0], &pair[1]], zone);
+            add_pair(&mut row, &mut covariance, [&pair[0], &pair[1]], zone);
         }
         row
     };
@@ -68,7 +68,7 @@ fn flux_response(light: &ZoneLight<'_>, shares: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// Corrects a row and its covariance by the change of the light of a zone between two designs.
-fn learn(
+fn add_pair(
     row: &mut [f64],
     covariance: &mut [Vec<f64>],
     [old, new]: [&MeasuredOpenings<'_>; 2],

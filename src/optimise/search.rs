@@ -2,7 +2,7 @@
 //!
 //! Every decision follows from the records of the measurements alone.
 
-use crate::optimise::bounds::{BoundMet, LengthBounds};
+use crate::optimise::bounds::LengthBounds;
 use crate::optimise::end::{Obstacle, SearchStop, reason};
 use crate::optimise::feedback::{LARGEST_STEP, ZoneLight, length_after, rounded};
 use crate::optimise::judge::{ObjectiveWeights, judge, noise, ratios};
@@ -164,7 +164,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A measured design as the response is learned from it.
+    /// A measured design for the fit of the response.
     fn design<'s>(&'s self, step: &'s MeasuredStep) -> MeasuredOpenings<'s> {
         let exponent = exponent(self.measurements.feedback.vary);
         let openings = step.values.iter().map(|value| exponent * value.ln()).collect();
@@ -201,7 +201,7 @@ impl<'a> Search<'a> {
     /// Whether a step has lengths within their bounds.
     fn is_within(&self, place: usize) -> bool {
         let values = &self.steps[place].measured.values;
-        self.within_bounds(values) == *values
+        self.clamp_all(values) == *values
     }
 
     fn next(&mut self) -> Next {
@@ -221,35 +221,36 @@ impl<'a> Search<'a> {
         };
         let (ratio, is_full) = (last.misfit.min_over_max, self.level + 1 == PATH_PARTS.len());
         let is_reached = ratio.value - SURE * ratio.std_error >= feedback.min_over_max;
-        let (moved, obstacle) = self.step_from(last);
-        let is_moved = moved != last.measured.values;
+        let (next, obstacle) = self.step_from(last);
+        let is_moved = next != last.measured.values;
         let scatter = noise(&ratios(&last.measured.zones, &self.measurements.zones.wanted));
         let is_noisy = last.misfit.deviation.value <= 2.0 * scatter;
         let is_over = self.steps.len() >= feedback.steps;
         let is_stuck = self.without_gain >= MOST_STEPS_WITHOUT_GAIN;
         if !is_full && !is_over && (is_reached || is_noisy || is_stuck || !is_moved) {
             (self.level, self.without_gain) = (self.level + 1, 0);
-            let same = || self.within_bounds(&last.measured.values);
-            return Next::Measure(if is_reached { same() } else { moved });
+            let same = || self.clamp_all(&last.measured.values);
+            return Next::Measure(if is_reached { same() } else { next });
         }
         let is_done = is_reached || !is_moved || is_stuck;
         if is_full
             && is_done
             && !is_over
-            && let Some(grown) = self.larger_openings()
+            && let Some(larger) = self.larger_openings()
         {
-            return Next::Measure(grown);
+            return Next::Measure(larger);
         }
         if (is_full && is_done) || is_over {
             return Next::End(self.ending(obstacle));
         }
-        Next::Measure(moved)
+        Next::Measure(next)
     }
 
-    /// Lengths within their bounds: those of the scene as it is may lie beyond it.
-    fn within_bounds(&self, values: &[f64]) -> Vec<f64> {
-        let held = values.iter().enumerate();
-        held.map(|(point, value)| rounded(self.bounds.clamped(self.law, point, *value).0)).collect()
+    /// Lengths clamped to their bounds: those of the scene as it is may lie beyond them.
+    fn clamp_all(&self, values: &[f64]) -> Vec<f64> {
+        let clamp =
+            |(point, value): (usize, &f64)| rounded(self.bounds.clamp(self.law, point, *value));
+        values.iter().enumerate().map(clamp).collect()
     }
 
     /// The lengths after a step, and what keeps points from moving.
@@ -264,7 +265,7 @@ impl<'a> Search<'a> {
             obstacle.note_noise();
         }
         if is_noise || feedback.uniformity_weight == 0.0 {
-            return (self.within_bounds(old), obstacle);
+            return (self.clamp_all(old), obstacle);
         }
         let designs: Vec<MeasuredOpenings<'_>> =
             self.steps.iter().map(|own| self.design(&own.measured)).collect();
@@ -273,7 +274,7 @@ impl<'a> Search<'a> {
         let openings: Vec<f64> = old.iter().map(|value| exponent * value.ln()).collect();
         let bounds: Vec<[f64; 2]> = (0..old.len())
             .map(|point| {
-                let ends = self.bounds.bounds(self.law, point);
+                let ends = self.bounds.at(self.law, point);
                 let ends = ends.map(|end| exponent * end.ln() - openings[point]);
                 let most = exponent.abs() * LARGEST_STEP.ln();
                 [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-most, most))
@@ -284,12 +285,12 @@ impl<'a> Search<'a> {
         let found = best_changes(problem).into_iter().zip(old).enumerate();
         let values = found.map(|(point, (own, value))| {
             let wanted = length_after(*value, self.damping * own.change, exponent);
-            let (held, _) = self.bounds.clamped(self.law, point, wanted);
+            let next = self.bounds.clamp(self.law, point, wanted);
             let full = length_after(*value, own.change, exponent);
-            if own.is_held && self.bounds.clamped(self.law, point, full).1 != BoundMet::None {
-                obstacle.hold(self.law.points[point], held);
+            if own.is_held && !self.bounds.leave_room(self.law, point, full) {
+                obstacle.hold(self.law.points[point], next);
             }
-            rounded(held)
+            rounded(next)
         });
         let values = values.collect();
         (values, obstacle)
@@ -308,15 +309,15 @@ impl<'a> Search<'a> {
         }
         let factor = GROWTH.powf(1.0 / exponent(self.measurements.feedback.vary));
         let old = &best.measured.values;
-        let grown: Vec<f64> = (0..old.len())
-            .map(|point| rounded(self.bounds.clamped(self.law, point, factor * old[point]).0))
+        let larger: Vec<f64> = (0..old.len())
+            .map(|point| rounded(self.bounds.clamp(self.law, point, factor * old[point])))
             .collect();
-        if grown == *old {
+        if larger == *old {
             return None;
         }
         self.before_growth = Some(objective.value);
         (self.growths, self.without_gain) = (self.growths + 1, 0);
-        Some(grown)
+        Some(larger)
     }
 
     fn ending(&self, mut obstacle: Obstacle) -> Ending {
@@ -353,22 +354,23 @@ impl<'a> Search<'a> {
         reason(&state, obstacle, stop, own)
     }
 
-    /// Limits that hold at some lengths.
+    /// Limits that hold some lengths.
     fn active_limits(&self, values: &[f64]) -> Vec<String> {
-        let held = values.iter().enumerate().filter_map(|(point, value)| {
+        let limit = |(point, value): (usize, &f64)| {
+            let ends = self.bounds.at(self.law, point);
+            let (end, words) = nearest_limit(*value, ends)?;
             let at = self.law.points[point];
-            let [least, greatest] = self.bounds.bounds(self.law, point);
-            let (end, words) = if *value <= (1.0 + AT_LIMIT) * least {
-                (least, "least")
-            } else if *value >= (1.0 - AT_LIMIT) * greatest {
-                (greatest, "most")
-            } else {
-                return None;
-            };
             Some(format!("{at:.4} mm along the face: {} mm is the {words}", rounded(end)))
-        });
-        held.collect()
+        };
+        values.iter().enumerate().filter_map(limit).collect()
     }
+}
+
+/// The limit within [`AT_LIMIT`] of a length, the nearer of both, and what it is in words.
+fn nearest_limit(value: f64, [least, greatest]: [f64; 2]) -> Option<(f64, &'static str)> {
+    let off = |end: f64| (value / end - 1.0).abs();
+    let nearer = if off(least) < off(greatest) { (least, "least") } else { (greatest, "most") };
+    (off(nearer.0) <= AT_LIMIT).then_some(nearer)
 }
 
 /// Exponent with which the openings follow a length.
@@ -377,5 +379,20 @@ fn exponent(vary: Vary) -> f64 {
         Vary::Diameter => 2.0,
         Vary::Radius | Vary::Depth | Vary::Height => 1.0,
         Vary::Pitch => -1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_within_one_percent_holds_a_length_and_of_two_the_nearer_one() {
+        let limits = [2.0, 6.0];
+        assert_eq!(nearest_limit(2.019, limits), Some((2.0, "least")));
+        assert_eq!(nearest_limit(2.021, limits), None);
+        assert_eq!(nearest_limit(5.95, limits), Some((6.0, "most")));
+        assert_eq!(nearest_limit(5.93, limits), None);
+        assert_eq!(nearest_limit(4.03, [4.0, 4.03]), Some((4.03, "most")));
     }
 }

@@ -12,7 +12,7 @@ pub enum Standing {
     Good,
     /// Something is not.
     Bad,
-    /// Nothing was requested.
+    /// Nothing was requested, or it is not finished.
     Open,
 }
 

@@ -106,7 +106,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// Whether the optimisation did what it was asked for.
+    /// The ending as a verdict.
     pub fn standing(&self) -> Standing {
         match self {
             Self::Reached => Standing::Good,

@@ -2,7 +2,7 @@
 //!
 //! It is collapsed from the binary tree of obvhs: a node takes the eight boxes that remain when its largest ones have been opened again
 //! and again (Wald, Benthin & Boulos, "Getting rid of packets", IEEE Symposium on Interactive Ray Tracing 2008, 49). Boxes are f32, padded
-//! outward, and cull only. Products and sums are never fused, so that every processor visits the same.
+//! outward, and cull only.
 
 use crate::scene::Ray;
 use lumiduct_base::math::Aabb;
@@ -19,32 +19,32 @@ use wide::f32x8;
 const WIDTH: usize = 8;
 /// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
 const PADDING_ULP: f64 = 8.0;
-/// Least size of a component of a direction, 1: smaller ones would divide 0 by 0 where the origin lies on a side of a box.
+/// Least size of a component of a direction, 1: with 0, an origin on a padded side would give 0 · ∞. A coordinate over it is finite in f32.
 const LEAST_COMPONENT: f32 = 1e-25;
 
 /// A tree over the boxes of surfaces.
 #[derive(Clone)]
 pub(crate) struct Tree {
-    nodes: Vec<Node>,
-    root: Child,
+    nodes: Vec<WideNode>,
+    root: WideChild,
     /// Surfaces in the order of the leaves.
     surfaces: Vec<u32>,
 }
 
 /// The boxes of eight children: least and greatest coordinates along each axis.
 #[derive(Clone)]
-struct Node {
+struct WideNode {
     bounds: [[f32x8; 2]; 3],
-    children: [Child; WIDTH],
+    children: [WideChild; WIDTH],
 }
 
 /// A node, or some surfaces.
 #[derive(Clone, Copy, Default)]
-struct Child {
+struct WideChild {
     /// Place of the node, or of the first surface.
     first: u32,
     /// Number of surfaces; 0 for a node.
-    surfaces: u32,
+    count: u32,
 }
 
 impl fmt::Debug for Tree {
@@ -54,23 +54,22 @@ impl fmt::Debug for Tree {
 }
 
 impl Tree {
-    /// A tree over boxes; `None` without any. Ray origins have coordinates up to `largest_coordinate`, mm.
-    pub(crate) fn over(boxes: &[Aabb], largest_coordinate: f64) -> Option<Self> {
+    /// A tree over boxes, of which there is at least one. Ray origins have coordinates up to `largest_coordinate`, mm.
+    pub(crate) fn over(boxes: &[Aabb], largest_coordinate: f64) -> Self {
         let padding = PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate;
         let boxes: Vec<Box32> = boxes.iter().map(|bounds| to_f32(bounds.grown(padding))).collect();
         let binary = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-        binary.nodes.first()?;
         let mut nodes = Vec::new();
         // Nodes of the binary tree whose children are still to be found, with their places.
         let mut open = Vec::new();
-        let child = |nodes: &mut Vec<Node>, open: &mut Vec<(u32, usize)>, place: u32| {
+        let child = |nodes: &mut Vec<WideNode>, open: &mut Vec<(u32, usize)>, place: u32| {
             let node = &binary.nodes[place as usize];
             if node.is_leaf() {
-                return Child { first: node.first_index, surfaces: node.prim_count };
+                return WideChild { first: node.first_index, count: node.prim_count };
             }
             open.push((place, nodes.len()));
-            nodes.push(Node::empty());
-            Child { first: nodes.len() as u32 - 1, surfaces: 0 }
+            nodes.push(WideNode::empty());
+            WideChild { first: nodes.len() as u32 - 1, count: 0 }
         };
         let root = child(&mut nodes, &mut open, 0);
         while let Some((place, own)) = open.pop() {
@@ -79,23 +78,23 @@ impl Tree {
                 nodes[own].set(slot, child, binary.nodes[place as usize].aabb());
             }
         }
-        Some(Self { nodes, root, surfaces: binary.primitive_indices })
+        Self { nodes, root, surfaces: binary.primitive_indices }
     }
 
-    /// Calls `visit` with the index of every surface whose box the ray meets before the distance
-    /// that the last `visit` returned, nearer boxes first.
+    /// Calls `visit` with the index of every surface whose box the ray meets before the smallest distance that `visit` has
+    /// returned; of the boxes in a node, nearer ones come first.
     #[inline]
     pub(crate) fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         let slabs = Slabs::of(ray);
         let mut limit = f32::INFINITY;
-        let mut open: SmallVec<[(f32, Child); 64]> = smallvec![(0.0, self.root)];
+        let mut open: SmallVec<[(f32, WideChild); 64]> = smallvec![(0.0, self.root)];
         while let Some((near, child)) = open.pop() {
             if near > limit {
                 continue;
             }
-            if child.surfaces > 0 {
+            if child.count > 0 {
                 let first = child.first as usize;
-                for surface in &self.surfaces[first..first + child.surfaces as usize] {
+                for surface in &self.surfaces[first..first + child.count as usize] {
                     limit = limit.min(round_up(visit(*surface as usize)));
                 }
                 continue;
@@ -135,14 +134,14 @@ fn opened(binary: &Bvh2, place: u32) -> SmallVec<[u32; WIDTH]> {
     found
 }
 
-impl Node {
+impl WideNode {
     /// Boxes that no ray meets.
     fn empty() -> Self {
         let bounds = [[f32::INFINITY, f32::NEG_INFINITY].map(f32x8::splat); 3];
-        Self { bounds, children: [Child::default(); WIDTH] }
+        Self { bounds, children: [WideChild::default(); WIDTH] }
     }
 
-    fn set(&mut self, slot: usize, child: Child, bounds: &Box32) {
+    fn set(&mut self, slot: usize, child: WideChild, bounds: &Box32) {
         self.children[slot] = child;
         for axis in 0..3 {
             for (side, corner) in [bounds.min, bounds.max].into_iter().enumerate() {
@@ -174,7 +173,7 @@ impl Slabs {
 
     /// Distances to the boxes of a node, and a bit for each that is met before a limit.
     #[inline]
-    fn meet(&self, node: &Node, limit: f32) -> ([f32; WIDTH], u32) {
+    fn meet(&self, node: &WideNode, limit: f32) -> ([f32; WIDTH], u32) {
         // Written out: closures over arrays are not inlined.
         let [x, y, z] = &node.bounds;
         let ([ox, oy, oz], [ix, iy, iz], [sx, sy, sz]) = (self.origin, self.inverse, self.first);
@@ -269,7 +268,7 @@ mod tests {
     fn every_box_that_a_ray_meets_is_visited() {
         for count in [1, 2, 8, 9, 700] {
             let boxes = boxes(count);
-            let tree = Tree::over(&boxes, 2.0 * SIZE).unwrap();
+            let tree = Tree::over(&boxes, 2.0 * SIZE);
             for ray in rays() {
                 let mut visited = BTreeSet::new();
                 tree.visit(&ray, |index| {
@@ -287,7 +286,7 @@ mod tests {
     #[test]
     fn boxes_up_to_a_limit_are_visited_and_few_beyond() {
         let boxes = boxes(2000);
-        let tree = Tree::over(&boxes, 2.0 * SIZE).unwrap();
+        let tree = Tree::over(&boxes, 2.0 * SIZE);
         let (mut all, mut near) = (0, 0);
         for ray in rays() {
             let first =
@@ -305,10 +304,5 @@ mod tests {
             });
         }
         assert!(2 * near < all, "{near} of {all}");
-    }
-
-    #[test]
-    fn there_is_no_tree_over_nothing() {
-        assert!(Tree::over(&[], 1.0).is_none());
     }
 }

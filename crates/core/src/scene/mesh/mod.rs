@@ -26,8 +26,9 @@ const FLATNESS: f64 = 1.0 / (1u64 << 22) as f64;
 /// A mesh placed in the scene.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// Positions of the vertices, mm, and those of each triangle: shared, so that more of a mesh stays in the cache.
+    /// Positions of the vertices, mm; triangles share them, so that more of a mesh fits in the cache.
     positions: Vec<DVec3>,
+    /// Vertices of each triangle, as indices of `positions`.
     triangles: Vec<[u32; 3]>,
     facet_normals: Vec<DVec3>,
     corner_normals: Option<Vec<[DVec3; 3]>>,

@@ -137,7 +137,7 @@ impl<'s> Backward<'s> {
         }
     }
 
-    /// The same in the strata that a batch takes: in a trial two batches take the same.
+    /// The shares of one batch. In a trial, each pair of batches takes the same randomly drawn strata.
     pub(crate) fn shares_of_batch(&self, sensor: usize, batch: u64) -> StratumShares {
         let shares = self.shares(sensor);
         if self.of_run.is_none() {

@@ -3,9 +3,9 @@
 //! The same pairs give estimates of second, fourth and sixth order, E1, E0 and E00 (`kernel`). The value is E0. For smooth
 //! light its bias is a small part of E0 - E1. An edge of the light inside the windows leaves the most: if the bias is
 //! proportional to their size, 2/3 of E0 - E1 remains in E0, which is 2.8 times E00 - E0. The stated bias is therefore 2.8
-//! times |E00 - E0| or its standard error, whichever is larger, within 1/4 and 2/3 of |E0 - E1|; where E0 - E1 is noise, half of the
+//! times the larger of |E00 - E0| and its standard error, within 1/4 and 2/3 of |E0 - E1|; where E0 - E1 is noise, half of the
 //! root of the squares of that difference and its error. A bias in proportion to the window would also have changed E0 from
-//! the stage before, which limits it. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not converge, and the bias
+//! the stage before: the larger of that change and its error limits it. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not converge, and the bias
 //! is not resolved.
 //!
 //! Share and stage are chosen once per sensor, from its flux, never per cell. If photons of the same run contradict the
@@ -222,6 +222,15 @@ mod tests {
         let (share, resolution) = bias_share(&tally(lower, 0.0), &tally(higher, 0.0));
         assert_eq!(resolution, Resolution::Resolved);
         assert!((share * lower - fourth).abs() < 1e-12, "{share}");
+    }
+
+    #[test]
+    fn a_difference_or_its_error_counts_whichever_is_larger() {
+        let edge = |mean: f64, error: f64| bias_share(&tally(1.0, 0.1), &tally(mean, error)).0;
+        assert!((edge(0.12, 0.08) - 2.8 * 0.12).abs() < 1e-12);
+        assert!((edge(0.08, 0.12) - 2.8 * 0.12).abs() < 1e-12);
+        let left = |before: f64| left_by_stages([&tally(before, 0.003), &tally(1.0, 0.004)], 2);
+        assert!((left(1.006) - 0.006).abs() < 1e-12 && (left(1.004) - 0.005).abs() < 1e-12);
     }
 
     #[test]

@@ -50,10 +50,10 @@ pub(super) fn rows(places: &Places, table: TextId, problems: &mut Problems) -> O
         }
         rows.push([place, value]);
     }
-    match TableAlong::table(rows) {
-        None => refuse(0, "there are no rows"),
-        found => found,
+    if rows.is_empty() {
+        return refuse(0, "there are no rows");
     }
+    TableAlong::table(rows)
 }
 
 fn number(record: &StringRecord, column: usize) -> Option<f64> {

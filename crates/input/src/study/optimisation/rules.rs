@@ -57,7 +57,8 @@ pub(super) fn feedback(
     let zones = zones(surface, face, base, problems)?;
     let face_length = base.scene.face_length(face)?;
     let (key, along) = length?;
-    let start = TableAlong::table(knots(&along, face_length))?;
+    let start = TableAlong::table(knots(&along, face_length))
+        .expect("the scene was read, and its tables with it");
     check_bridge(spec, problems)?;
     let efficiency = spec.efficiency.clone();
     Some(PatternFeedback {

@@ -63,10 +63,10 @@ pub fn run_one(
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<FinishedRun> {
-    let job = prepare(scene, settings)?;
+    let mut job = prepare(scene, settings)?;
     let luminaire = output.luminaire.as_ref();
     let luminaire =
-        luminaire.map(|path| LuminaireFile::open(&job, path, output.existing)).transpose()?;
+        luminaire.map(|path| LuminaireFile::open(&mut job, path, output.existing)).transpose()?;
     let dir = output_dir(scene, output);
     let lock = FolderLock::take(&dir)?;
     let (mut checkpoints, checkpoint) = CheckpointFile::open(&dir, recipe(&job), output)?;
@@ -85,7 +85,7 @@ pub fn run_one(
     if traced.stop != Stop::Interrupted {
         checkpoints.remove()?;
     }
-    let luminaire = luminaire.map(|file| file.write(&job, &report)).transpose()?;
+    let luminaire = luminaire.map(|file| file.write(&report)).transpose()?.flatten();
     Ok(FinishedRun {
         report,
         luminaire,

@@ -1,7 +1,7 @@
 //! Luminaires of goniometers: for the files of a report, and for a file of its own.
 
 use crate::pipeline::version::VERSION;
-use lumiduct_base::error::{Error, Result};
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use lumiduct_base::units::FluxUnit;
 use lumiduct_core::measure::Measures;
 use lumiduct_core::scene::{Goniometer, SensorKind};
@@ -45,14 +45,14 @@ pub struct WrittenFile {
 pub(super) struct LuminaireFile {
     path: PathBuf,
     format: LuminaireFormat,
-    export: LuminaireExport,
     existing: Existing,
 }
 
 impl LuminaireFile {
     /// Checks, before any work is done, that the scene has one luminaire and that the file can be written: that of the only
-    /// sensor with a key `luminaire` or, without such a key, that of the only goniometer or of the only one in the far field.
-    pub(super) fn open(job: &Job, path: &Path, existing: Existing) -> Result<Self> {
+    /// sensor with a key `luminaire` or, without such a key, that of the only goniometer or of the only one in the far field,
+    /// which then has its pages in the report, too.
+    pub(super) fn open(job: &mut Job, path: &Path, existing: Existing) -> Result<Self> {
         let refuse = |why: String| Error::Usage(format!("--ies {}: {why}", path.display()));
         let format = LuminaireFormat::of(path).map_err(|error| refuse(error.to_string()))?;
         if path.is_dir() {
@@ -61,37 +61,43 @@ impl LuminaireFile {
         if existing == Existing::Keep && path.exists() {
             return Err(refuse("the file exists; use --overwrite to replace it".to_owned()));
         }
-        let export = match &job.exports.luminaires[..] {
-            [only] => only.clone(),
-            [] => finest_export(job).map_err(refuse)?,
+        let format = match &job.exports.luminaires[..] {
+            // The key may ask for another edition of the format that the name has.
+            [only] => only.formats.iter().find(|own| own.ending() == format.ending()).copied(),
+            [] => {
+                let export = finest_export(job).map_err(refuse)?;
+                let remark = |message| Diagnostic {
+                    kind: DiagnosticKind::Warning,
+                    file: None,
+                    line: None,
+                    span: None,
+                    key: format!("sensors.{}", export.sensor),
+                    message,
+                    hint: None,
+                };
+                let remarks = export.remarks_on_distance(&job.scene);
+                job.warnings.extend(remarks.into_iter().map(remark));
+                job.exports.luminaires.push(export);
+                None
+            }
             _ => {
                 let why = "several sensors have a key `luminaire`; their files are in the report";
                 return Err(refuse(why.to_owned()));
             }
-        };
-        // The key may ask for another edition of the format that the name has.
-        let has_name = |own: &&LuminaireFormat| own.ending() == format.ending();
-        let format = export.formats.iter().find(has_name).copied().unwrap_or(format);
-        Ok(Self { path: path.to_path_buf(), format, export, existing })
+        }
+        .unwrap_or(format);
+        Ok(Self { path: path.to_path_buf(), format, existing })
     }
 
     /// Writes the file. Of its remarks, those that are in the report are left out.
-    pub(super) fn write(&self, job: &Job, report: &Report) -> Result<WrittenFile> {
-        let (format, export) = (self.format, &self.export);
-        let (file, mut remarks) = match &report.luminaires[..] {
-            [only] => (only.file(format), only.left_out(format)),
-            _ => {
-                let export = LuminaireExport { formats: vec![format], ..export.clone() };
-                let found = luminaire(job, &export, &report.measures)?;
-                let remarks = export.remarks_on_distance(&job.scene).into_iter();
-                let remarks =
-                    remarks.map(|remark| format!("`sensors.{}`: {remark}", export.sensor));
-                (found.file(format), remarks.chain(found.remarks).collect())
-            }
+    pub(super) fn write(&self, report: &Report) -> Result<Option<WrittenFile>> {
+        let write = |found: &MeasuredLuminaire| {
+            write_whole(&self.path, &found.file(self.format).bytes, self.existing)?;
+            let mut remarks = found.left_out(self.format);
+            remarks.retain(|remark| !report.warnings.contains(remark));
+            Ok(WrittenFile { path: self.path.clone(), format: self.format, remarks })
         };
-        write_whole(&self.path, &file.bytes, self.existing)?;
-        remarks.retain(|remark| !report.warnings.contains(remark));
-        Ok(WrittenFile { path: self.path.clone(), format, remarks })
+        report.luminaires.first().map(write).transpose()
     }
 }
 

@@ -83,6 +83,8 @@ fn luminaires_are_converted_and_described() {
 fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
     let place = Place::new();
     let said = place.good("run rod.toml --ies out/lamp.ies");
+    let page = fs::read_to_string(place.path("reports/rod/report.md")).unwrap();
+    assert!(page.contains("Luminous intensities in cd") && page.contains("\nfar: "), "{page}");
     assert!(said.contains("\nwritten: out/lamp.ies (IES)\n"), "{said}");
     assert!(said.contains("note: luminaire files of `far`: without the key `opening`"), "{said}");
     // The remarks of a file that the report does not have.
@@ -151,9 +153,9 @@ fn with_sphere(radius_mm: u32, keys: &str) -> Place {
 #[test]
 fn a_luminaire_file_of_a_sphere_states_its_distance() {
     let place = with_sphere(99, "");
-    let said = place.good("run rod.toml --ies a.ies");
-    let remark = "note: `sensors.far`: its files have the intensities at a distance of 99 mm;";
-    assert!(said.contains(remark), "{said}");
+    let said = errors(&place.run("run rod.toml --ies a.ies"));
+    let remark = "its files have the intensities at a distance of 99 mm;";
+    assert!(said.contains("sensors.far") && said.contains(remark), "{said}");
     assert!(!said.contains("lie within its sphere"), "{said}");
     let text = fs::read_to_string(place.path("a.ies")).unwrap();
     assert!(text.contains("at 99 mm, sensor far\r\n"), "{text}");
@@ -178,7 +180,8 @@ fn a_luminaire_file_of_a_sphere_states_its_distance() {
     assert!(said.contains("all parts of the scene do not lie within its sphere"), "{said}");
     // Of several goniometers, the only one in the far field is written.
     let both = Place::with("[sensors.near]\ngoniometer = { radius_mm = 99 }\n");
-    assert!(!both.good("run rod.toml --ies a.ies").contains("at a distance of"));
+    assert!(!errors(&both.run("run rod.toml --ies a.ies")).contains("at a distance of"));
+    assert!(both.path("a.ies").exists());
 }
 
 #[test]

@@ -191,7 +191,7 @@ mod tests {
     fn damaged_files_are_read_or_refused() {
         let original = "nm,n,k\n400,1.508,2.3e-7\n500,1.497,2.1e-7\n600,1.491,2.2e-7\n";
         let (mut read, mut refused) = (0, 0);
-        for bytes in mutants(original.as_bytes(), 20_000, 1) {
+        for bytes in mutants(original.as_bytes(), 100_000, 1) {
             match parse(&bytes, INDEX) {
                 Ok(found) => {
                     assert!(found.rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));

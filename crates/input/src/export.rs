@@ -54,7 +54,7 @@ impl LuminaireExport {
         let &Goniometer { c_cells, gamma_cells, .. } = goniometer;
         Self {
             sensor: sensor.to_owned(),
-            formats: vec![LuminaireFormat::Ies, LuminaireFormat::Ldt],
+            formats: Vec::new(),
             layout: TableLayout::finest([gamma_cells, c_cells]),
             lamps: None,
             opening: None,

@@ -209,7 +209,12 @@ fn read_head(
             (factor, FileGeneration::Undefined)
         }
         SecondNumber::Unused => {
-            numbers.next("the number after the ballast factor")?;
+            let unused = numbers.next("the number after the ballast factor")?;
+            if unused != 1.0 {
+                remarks.push(format!(
+                    "the number after the ballast factor is {unused}; LM-63 keeps it for later use since 1995, so that it is no factor"
+                ));
+            }
             (1.0, FileGeneration::Undefined)
         }
         SecondNumber::Generation => {

@@ -25,6 +25,8 @@ const ROUNDING: f64 = 1e-3;
 const SAME_RATIO: f64 = 0.05;
 /// Largest share that rounding explains, %.
 const MOST_PERCENT: f64 = 100.5;
+/// Types of luminaire: point with symmetry about the vertical axis, linear, other point; 0 if it is left out.
+const LUMINAIRE_TYPES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 /// Direct ratios for ten room indices.
 const DIRECT_RATIOS: usize = 10;
 
@@ -39,7 +41,10 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         }
     };
     keep("MANUFAC", fields.text("the company")?);
-    fields.optional("the type of luminaire")?;
+    let kind = fields.optional("the type of luminaire")?;
+    if !LUMINAIRE_TYPES.contains(&kind) {
+        remarks.push(format!("the type of luminaire is {kind}, expected 1 to 3; it is not used"));
+    }
     let symmetry = fields.count("the symmetry", 0..=4)?;
     let planes = fields.count("the number of C planes", 1..=MAX_ANGLES)?;
     let plane_step = fields.optional("the distance of C planes")?;

@@ -86,6 +86,13 @@ pub(crate) fn one_line(text: &str, longest: usize) -> String {
     flat.trim().chars().take(longest).collect()
 }
 
+/// A remark if a file has letters beyond ASCII, which are written in UTF-8.
+pub(crate) fn beyond_ascii(file: &str, what_is_known: &str) -> Option<String> {
+    let remark =
+        format!("texts have letters beyond ASCII, which are written in UTF-8; {what_is_known}");
+    (!file.is_ascii()).then_some(remark)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 
 use crate::luminaire::data::{LampFlux, Luminaire, LuminaireColour, WrittenLuminaire};
 use crate::luminaire::intensities::PlaneSymmetry;
-use crate::luminaire::text::{KEYWORD, one_line, seven_digits};
+use crate::luminaire::text::{KEYWORD, beyond_ascii, one_line, seven_digits};
 use std::fmt::Write;
 
 /// Keywords that every file must have (LM-63-2002, 5.3).
@@ -67,12 +67,7 @@ pub(crate) fn write(luminaire: &Luminaire, edition: WrittenEdition) -> WrittenLu
     list(intensities.angles_deg());
     list(&planes_deg);
     planes.iter().for_each(|place| list(intensities.plane(*place)));
-    let mut remarks = Vec::new();
-    if !out.is_ascii() {
-        let remark =
-            "texts have letters beyond ASCII, which are written in UTF-8; LM-63 knows ASCII only";
-        remarks.push(remark.to_owned());
-    }
+    let remarks = beyond_ascii(&out, "LM-63 knows ASCII only").into_iter().collect();
     WrittenLuminaire { text: out, remarks }
 }
 

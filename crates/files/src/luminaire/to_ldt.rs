@@ -2,7 +2,7 @@
 
 use crate::luminaire::data::{LampFlux, Luminaire, LuminaireColour, Opening, WrittenLuminaire};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
-use crate::luminaire::text::{one_line, seven_digits, with_digits};
+use crate::luminaire::text::{beyond_ascii, one_line, seven_digits, with_digits};
 
 /// Keywords of LM-63 for whose texts EULUMDAT has a field.
 pub(crate) const FIELDS_OF_LDT: [&str; 6] =
@@ -20,9 +20,11 @@ const EQUAL_STEPS: f64 = 1e-6;
 /// The file. Direct ratios are written as 0, which means that they are not given.
 pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     let Luminaire { lamps, power_w, opening, colour, intensities, .. } = luminaire;
-    let mut remarks = Vec::new();
-    let text =
-        |keyword: &str, longest| one_line(luminaire.text(keyword).unwrap_or_default(), longest);
+    let mut remarks: Vec<String> =
+        FIELDS_OF_LDT.into_iter().filter_map(|keyword| remark_on_cut(luminaire, keyword)).collect();
+    let text = |keyword: &str| {
+        one_line(luminaire.text(keyword).unwrap_or_default(), most_letters(keyword))
+    };
     let flux = intensities.flux();
     let (count, lamp_flux) = match *lamps {
         LampFlux::Absolute => (-1, flux),
@@ -49,18 +51,18 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     };
 
     let kind = kind(intensities, opening);
-    let mut lines = vec![text("MANUFAC", TEXT), kind.to_string(), symmetry.to_string()];
+    let mut lines = vec![text("MANUFAC"), kind.to_string(), symmetry.to_string()];
     let [planes_count, angles_count] = [circle.len(), angles.len()].map(|count| count as f64);
     lines.extend(numbers(&[planes_count, step(&circle), angles_count, step(angles)]));
-    lines.extend(["TEST", "LUMINAIRE", "LUMCAT"].map(|keyword| text(keyword, TEXT)));
-    lines.extend([String::new(), text("ISSUEDATE", TEXT)]);
+    lines.extend(["TEST", "LUMINAIRE", "LUMCAT"].map(text));
+    lines.extend([String::new(), text("ISSUEDATE")]);
     // The luminaire itself, then its luminous area.
     lines.extend(numbers(&[length, width, opening.height_mm, length, width]));
     lines.extend(numbers(&[opening.height_mm; 4]));
     lines.extend([percent(intensities.flux_between(0.0, 90.0), flux), percent(flux, lamp_flux)]);
     // Conversion factor, tilt during measurement, and one set of lamps.
     lines.extend(["1", "0", "1"].map(str::to_owned));
-    lines.extend([count.to_string(), text("LAMP", LAMP), seven_digits(lamp_flux)]);
+    lines.extend([count.to_string(), text("LAMP"), seven_digits(lamp_flux)]);
     let LuminaireColour { temperature, rendering } = colour;
     lines.extend([temperature, rendering].map(|words| one_line(words, TEXT)));
     lines.push(seven_digits(*power_w));
@@ -71,8 +73,23 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
         let values = angles.iter().map(|angle| intensities.at(plane, *angle) * 1000.0 / lamp_flux);
         lines.extend(values.map(|value| with_digits(value, PER_KILOLUMEN_DIGITS)));
     }
-    let text = lines.iter().map(|line| format!("{line}\r\n")).collect();
+    let text: String = lines.iter().map(|line| format!("{line}\r\n")).collect();
+    remarks.extend(beyond_ascii(&text, "some readers of EULUMDAT expect Windows-1252"));
     WrittenLuminaire { text, remarks }
+}
+
+/// Most letters of the field for the text of a keyword.
+fn most_letters(keyword: &str) -> usize {
+    if keyword == "LAMP" { LAMP } else { TEXT }
+}
+
+/// A remark if a text is too long for its field.
+fn remark_on_cut(luminaire: &Luminaire, keyword: &str) -> Option<String> {
+    let longest = most_letters(keyword);
+    let length = one_line(luminaire.text(keyword)?, usize::MAX).chars().count();
+    let remark =
+        format!("of the {length} letters of {keyword} it has room for the first {longest}");
+    (length > longest).then_some(remark)
 }
 
 /// The symmetry, all planes and the planes whose intensities are written, deg.

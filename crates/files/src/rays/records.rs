@@ -41,9 +41,6 @@ impl RayRecords {
         let RecordLayout { format, start, numbers, count, .. } = layout;
         let record = numbers.saturating_mul(NUMBER);
         let expected = count.checked_mul(record).and_then(|rays| rays.checked_add(start));
-        if count == 0 {
-            return Err(RayFileError::at_byte(format, 0, "it has no rays"));
-        }
         if expected != Some(length) {
             let there = length.saturating_sub(start);
             // A record has a position and a direction: it is never empty.
@@ -149,6 +146,11 @@ impl RayHeader {
             return Err(self.wrong(at, format!("the flux is {flux}")));
         }
         Ok((flux > 0.0).then_some(flux))
+    }
+
+    /// A number of rays, of which there must be one.
+    pub(crate) fn rays(&self, at: usize, count: u64) -> Result<u64, RayFileError> {
+        if count == 0 { Err(self.wrong(at, "it has no rays")) } else { Ok(count) }
     }
 
     /// A violation at a byte.

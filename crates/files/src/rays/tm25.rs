@@ -44,7 +44,7 @@ pub(crate) fn open(
         return Err(header.wrong(4, problem));
     }
     let (luminous, radiant) = (header.flux(12)?, header.flux(16)?);
-    let count = header.u64(20)?;
+    let count = header.rays(20, header.u64(20)?)?;
     let (tables, columns, text) = (header.i32(76)?, header.i32(80)?, header.i32(84)?);
     let sizes = [(76, tables), (80, columns), (84, text)];
     if let Some((at, size)) = sizes.into_iter().find(|(_, size)| *size < 0) {
@@ -53,7 +53,13 @@ pub(crate) fn open(
     let columns_of_rays = RayColumns::read(&header, columns as u64)?;
     let (start, mut remarks) = (after_tables(&mut source, tables, length)?, Vec::new());
     // Sizes were checked not to be negative.
-    let start = start + columns as u64 * COLUMN_NAME + text as u64;
+    let start_of_text = start + columns as u64 * COLUMN_NAME;
+    let start = start_of_text + text as u64;
+    let too_long = [(80, start_of_text, "additional columns"), (84, start, "bytes of text")];
+    if let Some((at, _, what)) = too_long.into_iter().find(|(_, end, _)| *end > length) {
+        let problem = format!("its {what} do not fit into the file of {length} bytes");
+        return Err(header.wrong(at, problem));
+    }
     if version == LATER_VERSION {
         remarks.push(format!("its version is {LATER_VERSION}, which is read as {VERSION}"));
     }

@@ -51,7 +51,7 @@ pub(crate) fn open(
     length: u64,
 ) -> Result<Opened<RayRecords>, RayFileError> {
     let header = RayHeader::read(&mut source, FORMAT, HEADER)?;
-    let count = u64::from(header.u32(4)?);
+    let count = header.rays(4, u64::from(header.u32(4)?))?;
     let code = header.i32(136)?;
     let to_mm = unit_mm(code).ok_or_else(|| {
         header
@@ -73,6 +73,11 @@ pub(crate) fn open(
     let moved = (140..164).step_by(4).map(|at| header.f32(at)).collect::<Result<Vec<_>, _>>()?;
     if moved.iter().any(|own| *own != 0.0) {
         remarks.push("the place and rotation in its header are not applied; give them to the source with `at`".to_owned());
+    }
+    let scales = [164, 168, 172].map(|at| header.f32(at).unwrap_or(1.0));
+    // Older files leave them empty.
+    if scales.iter().any(|own| ![0.0, 1.0].contains(own)) {
+        remarks.push(format!("the scales in its header, {scales:?}, are not applied"));
     }
     if numbers == 8 {
         remarks.push("its wavelengths are not used".to_owned());

@@ -54,13 +54,13 @@ pub(super) fn check(text: &str) -> Result<(), Violation> {
 
 /// A tag from its `<` to its `>`.
 struct Tag {
-    /// With both brackets, bytes.
+    /// With both brackets, if it has no attribute too many, bytes.
     length: usize,
     attributes: usize,
     namespaces: usize,
 }
 
-/// The tag that a text begins with; `None` if it does not end.
+/// The tag that a text begins with, up to one attribute too many; `None` if it does not end.
 fn tag(text: &str) -> Option<Tag> {
     let (mut attributes, mut namespaces, mut quote) = (0, 0, None);
     for (at, letter) in text.char_indices() {
@@ -72,6 +72,9 @@ fn tag(text: &str) -> Option<Tag> {
                 attributes += 1;
                 let name = text[..at].trim_end().rsplit(char::is_whitespace).next();
                 namespaces += usize::from(name.is_some_and(|name| name.starts_with("xmlns")));
+                if attributes > ATTRIBUTES {
+                    return Some(Tag { length: at + 1, attributes, namespaces });
+                }
             }
             (None, '>') => return Some(Tag { length: at + 1, attributes, namespaces }),
             (None, _) => {}
@@ -96,6 +99,12 @@ mod tests {
         let nested: String = (0..65).map(|n| format!("<a xmlns:n{n} = \"u\">\n")).collect();
         refused(&nested, 65, "64 declarations of namespaces");
         refused(&"<a>\n".repeat(65), 65, "64 elements within each other");
+        // A megabyte of attributes in a tag, which ends or not.
+        for text in
+            [format!("<a {}>", "=".repeat(1 << 20)), format!("\n<a{}", " b=".repeat(1 << 20))]
+        {
+            refused(&text, 1 + usize::from(text.starts_with('\n')), "64 attributes");
+        }
     }
 
     #[test]

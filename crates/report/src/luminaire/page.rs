@@ -64,10 +64,10 @@ fn summary(found: &MeasuredLuminaire) -> String {
     } else {
         "The errors of the values are not known.".to_owned()
     };
+    let name = if files.is_empty() { found.sensor.clone() } else { files.join(" and ") };
     let mut text = format!(
-        "{}: {} lm, peak {} cd, {symmetry}. Between the values of the table, intensities are linear in both angles; of all such \
+        "{name}: {} lm, peak {} cd, {symmetry}. Between the values of the table, intensities are linear in both angles; of all such \
             tables this one fits the cells of the goniometer best, and it has their flux. {error}",
-        files.join(" and "),
         format_value(flux),
         format_value(intensities.peak()),
     );

@@ -36,8 +36,8 @@ impl Gathering {
     /// A usual window for guides of some millimetres.
     pub(crate) const fn to_depth(depth: u32) -> Self {
         match depth {
-            0 => Self { depth, radius_mm: 0.9, angle_deg: 7.0, records: 1500, photons: 3000 },
-            _ => Self { depth, radius_mm: 0.6, angle_deg: 5.0, records: 1500, photons: 2000 },
+            0 => Self { depth, radius_mm: 0.9, angle_deg: 7.0, records: 600, photons: 3000 },
+            _ => Self { depth, radius_mm: 0.6, angle_deg: 5.0, records: 600, photons: 2000 },
         }
     }
 

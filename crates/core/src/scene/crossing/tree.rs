@@ -54,7 +54,7 @@ impl fmt::Debug for Tree {
 }
 
 impl Tree {
-    /// A tree over boxes, of which there is at least one. Ray origins have coordinates up to `largest_coordinate`, mm.
+    /// A tree over one or more boxes; rays start at coordinates up to `largest_coordinate`, mm.
     pub(crate) fn over(boxes: &[Aabb], largest_coordinate: f64) -> Self {
         let padding = PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate;
         let boxes: Vec<Box32> = boxes.iter().map(|bounds| to_f32(bounds.grown(padding))).collect();

@@ -8,8 +8,8 @@ mod skip;
 
 use lumiduct::study::{BatchOptions, OnExisting, run_study};
 use lumiduct_core::transport::{Interrupt, Shard};
-use lumiduct_input::{StudySettings, load_study};
-use lumiduct_report::study::{DesignRecord, Pairing};
+use lumiduct_input::{Plan, Study, StudySettings, load_study};
+use lumiduct_report::study::{DesignRecord, Pairing, StudyReport};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -65,6 +65,11 @@ fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
         return;
     }
     for path in studies() {
+        let study = load_study(&path, &StudySettings::default()).unwrap();
+        if matches!(study.plan, Plan::Search(_)) {
+            begin_again(&path, &study);
+            continue;
+        }
         let manifest = json(&results(&path).join("batch.json"));
         let folder = tempfile::tempdir().unwrap();
         let options = BatchOptions {
@@ -75,15 +80,183 @@ fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
             shard: Shard::new(AGAIN, manifest["designs"].as_u64().unwrap()).unwrap(),
         };
         run_study(&path, &options, &Interrupt::default(), &|_| {}).unwrap();
-        let record = |folder: &Path| -> DesignRecord {
-            let path = folder.join(format!("designs/{AGAIN:04}.json"));
-            let record: DesignRecord = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+        let record = |folder: &Path| {
             // Another build may have traced the results in the repository; its numbers are the
             // same.
-            DesignRecord { build: String::new(), ..record }
+            DesignRecord { build: String::new(), ..record(folder, AGAIN) }
         };
         assert_eq!(record(folder.path()), record(&results(&path)), "{}", path.display());
     }
+}
+
+fn record(folder: &Path, design: u64) -> DesignRecord {
+    let path = folder.join(format!("designs/{design:04}.json"));
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// Traces the first designs of a search again: one of fewer designs begins with the same.
+fn begin_again(path: &Path, study: &Study) {
+    const DESIGNS: u64 = 4;
+    let folder = tempfile::tempdir().unwrap();
+    let mut text: toml::Table = study.text.parse().unwrap();
+    text["scene"] = fs::canonicalize(&study.scene).unwrap().to_str().unwrap().into();
+    text["plan"]["search"]["designs"] = (DESIGNS as i64).into();
+    let copy = folder.path().join("first.toml");
+    fs::write(&copy, text.to_string()).unwrap();
+    let found = search(&copy, &folder.path().join("out"), OnExisting::Keep);
+    assert_eq!(found.designs.len() as u64, DESIGNS);
+    for design in &found.designs {
+        let before = record(&results(path), design.design as u64);
+        assert_eq!((&design.settings, &design.outcome), (&before.settings, &before.outcome));
+    }
+}
+
+/// The results of a whole search.
+fn search(path: &Path, dir: &Path, existing: OnExisting) -> StudyReport {
+    let options = BatchOptions {
+        settings: StudySettings::default(),
+        dir: Some(dir.to_path_buf()),
+        existing,
+        jobs: 2,
+        shard: Shard::WHOLE,
+    };
+    run_study(path, &options, &Interrupt::default(), &|_| {}).unwrap().report.unwrap()
+}
+
+/// Half of a beam passes ln 2 / 0.05 mm of this dye.
+const DYE: &str = r#"
+lumiduct = 1
+title = "Dye"
+[media.dye]
+index = 1
+absorption_per_mm = 0.05
+[solids.rod.cylinder]
+radius_mm = 5
+length_mm = 10
+medium = "dye"
+[sources.beam.disk]
+radius_mm = 1
+flux_lm = 1
+emission = "collimated"
+at = { position_mm = [0, 0, -1] }
+[sensors.exit]
+plane = {}
+on = "rod.exit"
+counts = "leaving"
+"#;
+
+/// The longest rod through which half of the light passes.
+const LONGEST: &str = r#"
+lumiduct_study = 1
+title = "Longest rod"
+scene = "dye.toml"
+measures = ["exit.efficiency"]
+plan = { search = { designs = 40, cost = { length = -1 } } }
+[parameters.length]
+keys = ["solids.rod.cylinder.length_mm"]
+unit = "mm"
+range = { from = 1, to = 50 }
+[run]
+paths = 1000
+estimator = "forward"
+[[check]]
+measure = "exit.efficiency"
+min = 0.5
+"#;
+
+fn longest(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("dye.toml"), DYE).unwrap();
+    let path = folder.path().join("longest.toml");
+    fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_search_finds_the_length_of_a_law_of_absorption_and_goes_on_where_it_was_stopped() {
+    let (folder, path) = longest(LONGEST);
+    let out = folder.path().join("out");
+    let whole = search(&path, &out, OnExisting::Keep);
+    let best = whole.best_passing().unwrap();
+    let length = best.settings["length"].number().unwrap();
+    let truth = 2f64.ln() / 0.05;
+    assert!(length <= truth && length > truth - 0.02, "{length}, not {truth}");
+    assert_eq!(whole.designs[0].settings["length"].number(), Some(10.0), "as in the scene");
+    let scene = fs::read_to_string(out.join("dye_best.toml")).unwrap();
+    assert!(scene.contains(&format!("length_mm = {length}")), "{scene}");
+    let page = fs::read_to_string(out.join("study.md")).unwrap();
+    let words = format!("the best that passes is design {}", best.design);
+    assert!(page.contains(&words) && page.contains("history.png"), "{page}");
+    let records = |out: &Path| -> Vec<Vec<u8>> {
+        let path = |design: &DesignRecord| out.join(format!("designs/{:04}.json", design.design));
+        whole.designs.iter().map(|design| fs::read(path(design)).unwrap()).collect()
+    };
+    // As after a kill within the search.
+    let again = folder.path().join("again");
+    fs::create_dir_all(again.join("designs")).unwrap();
+    let names = ["batch.json", "longest.toml"].map(str::to_owned).into_iter();
+    for name in names.chain((1..=10).map(|design| format!("designs/{design:04}.json"))) {
+        fs::copy(out.join(&name), again.join(&name)).unwrap();
+    }
+    search(&path, &again, OnExisting::Resume);
+    assert_eq!(records(&out), records(&again));
+    for name in ["study.json", "study.md", "study.csv", "dye_best.toml"] {
+        let [before, after] = [&out, &again].map(|out| fs::read(out.join(name)).unwrap());
+        assert_eq!(before, after, "{name}");
+    }
+}
+
+#[test]
+fn a_search_without_a_design_that_passes_says_which_is_the_closest() {
+    let none = LONGEST.replace("min = 0.5", "min = 0.99").replace("designs = 40", "designs = 12");
+    let (folder, path) = longest(&none);
+    let out = folder.path().join("out");
+    let found = search(&path, &out, OnExisting::Keep);
+    assert!(found.best_passing().is_none() && !found.is_good());
+    let [closest, farthest] = [found.analysis.ranked.first(), found.analysis.ranked.last()];
+    let length = |number: usize| found.designs[number - 1].settings["length"].number().unwrap();
+    assert!(length(closest.unwrap().design) < length(farthest.unwrap().design));
+    assert!(!out.join("dye_best.toml").exists());
+    let page = fs::read_to_string(out.join("study.md")).unwrap();
+    assert!(page.contains("no design passes"), "{page}");
+}
+
+#[test]
+fn a_search_for_the_highest_measure_needs_no_cost_and_ends_when_whole_numbers_do() {
+    let text = LONGEST
+        .replace(", cost = { length = -1 }", "")
+        .replace("range = { from = 1, to = 50 }", "range = { from = 8, to = 12 }\nwhole = true")
+        .replace("[run]", "[ranking]\nmeasure = \"exit.efficiency\"\n[run]");
+    let (folder, path) = longest(&text);
+    let found = search(&path, &folder.path().join("out"), OnExisting::Keep);
+    assert_eq!(found.best_passing().unwrap().settings["length"].number(), Some(8.0));
+    assert!(found.designs.len() <= 5 && found.facts.designs == found.designs.len());
+}
+
+#[test]
+fn a_search_that_says_nothing_or_too_much_is_refused() {
+    let refused = |old: &str, new: &str, words: &str| {
+        let text = LONGEST.replace(old, new);
+        assert_ne!(text, LONGEST);
+        let (_folder, path) = longest(&text);
+        let error = load_study(&path, &StudySettings::default()).unwrap_err().to_string();
+        assert!(error.contains(words), "{new}: {error}");
+    };
+    refused(", cost = { length = -1 }", "", "needs to know which design is the best");
+    refused("length = -1", "lenght = -1", "there is no parameter `lenght`");
+    refused("[run]", "[ranking]\nmeasure = \"exit.efficiency\"\n[run]", "`ranking` already says");
+    refused("range = { from = 1, to = 50 }", "values = [1, 2]", "is not for the plan `search`");
+    refused("designs = 40", "designs = 3", "3");
+    let (folder, path) = longest(LONGEST);
+    let options = BatchOptions {
+        settings: StudySettings::default(),
+        dir: Some(folder.path().join("out")),
+        existing: OnExisting::Keep,
+        jobs: 1,
+        shard: Shard::new(1, 2).unwrap(),
+    };
+    let error = run_study(&path, &options, &Interrupt::default(), &|_| {}).unwrap_err();
+    assert!(error.to_string().contains("a search cannot be split"), "{error}");
 }
 
 /// A rod with two indices, for a seed.

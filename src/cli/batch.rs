@@ -105,7 +105,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
     }
 }
 
-/// Prints the outcome of a batch; the exit code says whether every design is as requested.
+/// Prints the outcome of a batch; the exit code says whether every design is as requested or, of a search, one is found.
 pub(super) fn tell(finished: &FinishedStudy, quiet: bool) -> ExitCode {
     if !quiet {
         warn(&finished.warnings);
@@ -118,7 +118,7 @@ pub(super) fn tell(finished: &FinishedStudy, quiet: bool) -> ExitCode {
         return ExitCode::from(INTERRUPTED);
     }
     match &finished.report {
-        Some(report) if !report.counts().is_clean() => ExitCode::from(1),
+        Some(report) if !report.is_good() => ExitCode::from(1),
         Some(_) | None => ExitCode::SUCCESS,
     }
 }

@@ -11,7 +11,7 @@ pub(crate) struct Design {
     pub(crate) settings: Vec<Setting>,
 }
 
-/// All designs of a study, numbered from 1. The same study gives the same designs.
+/// All designs of a study that are known before any is traced, numbered from 1. The same study gives the same designs.
 pub(crate) fn designs(study: &Study) -> Vec<Design> {
     let parameters = &study.parameters;
     let settings = match &study.plan {
@@ -21,6 +21,8 @@ pub(crate) fn designs(study: &Study) -> Vec<Design> {
         Plan::LatinHypercube(own) => sampled(parameters, &latin_hypercube(own, parameters.len())),
         Plan::Sobol(own) => sampled(parameters, &sobol(own, parameters.len())),
         Plan::Tolerance(own) => sampled(parameters, &random(own, parameters.len())),
+        // It proposes them one after the other.
+        Plan::Search(_) => Vec::new(),
     };
     let numbered = settings.into_iter().enumerate();
     numbered.map(|(index, settings)| Design { number: index + 1, settings }).collect()

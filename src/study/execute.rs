@@ -9,12 +9,13 @@ use crate::study::designs::Design;
 use crate::study::store::Store;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
-use lumiduct_core::measure;
+use lumiduct_base::number::{format_value, format_with_error};
+use lumiduct_core::measure::{self, Measure, Status};
+use lumiduct_core::plan::Estimator;
 use lumiduct_core::transport::{Interrupt, batch_paths};
-use lumiduct_input::{Job, Keep, Setting, Settings, Study};
+use lumiduct_input::{COST, Job, Keep, Parameter, Plan, SearchPlan, Setting, Settings, Study};
 use lumiduct_report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
 use lumiduct_report::{self as report, Existing, Folder, FolderLock};
-use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -36,6 +37,21 @@ pub struct BatchProgress {
     pub fraction: f64,
     /// Time since the start.
     pub elapsed: Duration,
+    /// The best design of a search so far.
+    pub best: Option<BestDesign>,
+}
+
+/// The best design of a search so far.
+#[derive(Debug, Clone, Copy)]
+pub struct BestDesign {
+    /// Its number, from 1.
+    pub number: usize,
+    /// The measure that decides, and its error.
+    pub value: f64,
+    /// Standard error with bias.
+    pub error: f64,
+    /// Whether it passes every check; if not, it is the closest to that.
+    pub passes: bool,
 }
 
 impl BatchProgress {
@@ -51,6 +67,14 @@ impl BatchProgress {
             let left = self.elapsed.as_secs_f64() * (1.0 - self.fraction) / self.fraction;
             text += &format!(", {left:.0} s left");
         }
+        if let Some(BestDesign { number, value, error, passes }) = self.best {
+            let found =
+                if error > 0.0 { format_with_error(value, error) } else { format_value(value) };
+            text += &match passes {
+                true => format!(", best {number}: {found}"),
+                false => format!(", design {number} is the closest to passing its checks"),
+            };
+        }
         text
     }
 }
@@ -58,7 +82,6 @@ impl BatchProgress {
 /// A batch in progress.
 pub(crate) struct DesignBatch<'a> {
     pub(crate) study: &'a Study,
-    pub(crate) designs: &'a [Design],
     pub(crate) store: &'a Store,
     /// Designs in flight at once.
     pub(crate) jobs: usize,
@@ -68,22 +91,19 @@ pub(crate) struct DesignBatch<'a> {
 
 /// Traces those of the wanted designs (numbers from 1) that have no record yet. Ends at the first
 /// file system error or when interrupted; designs finished by then have their records.
-pub(crate) fn execute(batch: &DesignBatch<'_>, wanted: &[usize]) -> Result<()> {
+pub(crate) fn execute(batch: &DesignBatch<'_>, designs: &[Design], wanted: &[usize]) -> Result<()> {
     let records = batch.store.records()?;
-    expect_designs(batch, &records)?;
+    for (number, record) in &records {
+        let design = number.checked_sub(1).and_then(|index| designs.get(index));
+        expect_design(batch, design, record)?;
+    }
     let pending: Vec<&Design> = wanted
         .iter()
         .filter(|number| !records.contains_key(number))
-        .filter_map(|number| batch.designs.get(number - 1))
+        .filter_map(|number| designs.get(number - 1))
         .collect();
-    let study = batch.study;
-    let usual = batch_paths(&study.base.scene, &study.base.run);
-    let common =
-        Settings { batch_paths: Some(usual.div_ceil(BATCH_PARTS)), ..study.common.clone() };
     let (next, trouble) = (AtomicUsize::new(0), Mutex::new(None));
-    let board = Board::new(wanted.len(), pending.len(), batch);
-    batch.store.begin_timing()?;
-    board.show();
+    let tracing = DesignTracing::new(batch, [wanted.len(), pending.len()])?;
     std::thread::scope(|scope| {
         for _ in 0..batch.jobs.min(pending.len()) {
             scope.spawn(|| {
@@ -91,7 +111,7 @@ pub(crate) fn execute(batch: &DesignBatch<'_>, wanted: &[usize]) -> Result<()> {
                     if batch.interrupt.is_raised() {
                         return;
                     }
-                    if let Err(error) = trace_timed(batch, design, &common, &board) {
+                    if let Err(error) = tracing.trace_timed(design) {
                         // The others end, too, and lose their unfinished work, which can be
                         // recomputed.
                         batch.interrupt.raise();
@@ -109,16 +129,18 @@ pub(crate) fn execute(batch: &DesignBatch<'_>, wanted: &[usize]) -> Result<()> {
     }
 }
 
-/// Checks that every record belongs to the design of its number.
-fn expect_designs(batch: &DesignBatch<'_>, records: &BTreeMap<usize, DesignRecord>) -> Result<()> {
-    for (number, record) in records {
-        let design = number.checked_sub(1).and_then(|index| batch.designs.get(index));
-        let own = design.map(|design| settings(batch.study, design));
-        if own.as_ref() != Some(&record.settings) {
-            return Err(batch.store.no_record(*number, "its design has other settings"));
-        }
+/// Checks that a record belongs to the design of its number.
+pub(crate) fn expect_design(
+    batch: &DesignBatch<'_>,
+    design: Option<&Design>,
+    record: &DesignRecord,
+) -> Result<()> {
+    let own = design.map(|design| settings(batch.study, design));
+    if own.as_ref() == Some(&record.settings) {
+        Ok(())
+    } else {
+        Err(batch.store.no_record(record.design, "its design has other settings"))
     }
-    Ok(())
 }
 
 /// What the parameters are set to in a design, by their names.
@@ -127,62 +149,79 @@ fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
     names.zip(design.settings.iter().cloned()).collect()
 }
 
+/// Designs that are being traced.
+pub(crate) struct DesignTracing<'a> {
+    batch: &'a DesignBatch<'a>,
+    /// Settings common to all designs.
+    common: Settings,
+    pub(crate) board: Board<'a>,
+}
+
 /// How a design ended.
-enum DesignEnd {
-    /// It has its record.
-    Recorded,
+pub(crate) enum DesignEnd {
+    /// With this record.
+    Recorded(Box<DesignRecord>),
     /// The user stopped it, and nothing was written.
     Stopped,
 }
 
-/// Traces a design, and notes how long it took.
-fn trace_timed(
-    batch: &DesignBatch<'_>,
-    design: &Design,
-    common: &Settings,
-    board: &Board<'_>,
-) -> Result<()> {
-    let start = Instant::now();
-    match trace(batch, design, common, board)? {
-        DesignEnd::Stopped => Ok(()),
-        DesignEnd::Recorded => {
-            board.end(design.number);
-            batch.store.note_seconds(design.number, start.elapsed().as_secs_f64())
-        }
+impl<'a> DesignTracing<'a> {
+    /// Begins; `counts` are the designs that are wanted, and those of them without a record.
+    pub(crate) fn new(batch: &'a DesignBatch<'a>, counts: [usize; 2]) -> Result<Self> {
+        let study = batch.study;
+        let usual = batch_paths(&study.base.scene, &study.base.run);
+        let common =
+            Settings { batch_paths: Some(usual.div_ceil(BATCH_PARTS)), ..study.common.clone() };
+        batch.store.begin_timing()?;
+        let board = Board::new(counts, batch);
+        board.show();
+        Ok(Self { batch, common, board })
     }
-}
 
-/// Traces a design and writes its record, unless it is interrupted.
-fn trace(
-    batch: &DesignBatch<'_>,
-    design: &Design,
-    common: &Settings,
-    board: &Board<'_>,
-) -> Result<DesignEnd> {
-    let study = batch.study;
-    let own = study.parameters.iter().zip(&design.settings);
-    let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
-    let outcome = match pipeline::prepare(&study.scene, &common.with(own)) {
-        Ok(job) => match trace_job(batch, design, job, board) {
-            Ok(Some(result)) => DesignOutcome::Done(Box::new(result)),
-            Ok(None) => return Ok(DesignEnd::Stopped),
-            // Its time was up before anything was counted.
+    /// Traces a design, and notes how long it took.
+    pub(crate) fn trace_timed(&self, design: &Design) -> Result<DesignEnd> {
+        let start = Instant::now();
+        let end = self.trace(design)?;
+        match &end {
+            DesignEnd::Stopped => {}
+            DesignEnd::Recorded(_) => {
+                self.board.end(design.number);
+                let seconds = start.elapsed().as_secs_f64();
+                self.batch.store.note_seconds(design.number, seconds)?;
+            }
+        }
+        Ok(end)
+    }
+
+    /// Traces a design and writes its record, unless it is interrupted.
+    fn trace(&self, design: &Design) -> Result<DesignEnd> {
+        let Self { batch, common, board } = self;
+        let study = batch.study;
+        let own = study.parameters.iter().zip(&design.settings);
+        let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
+        let outcome = match pipeline::prepare(&study.scene, &common.with(own)) {
+            Ok(job) => match trace_job(batch, design, job, board) {
+                Ok(Some(result)) => DesignOutcome::Done(Box::new(result)),
+                Ok(None) => return Ok(DesignEnd::Stopped),
+                // Its time was up before anything was counted.
+                Err(Error::Usage(message)) => DesignOutcome::Failed(message),
+                Err(error) => return Err(error),
+            },
+            Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
             Err(Error::Usage(message)) => DesignOutcome::Failed(message),
-            Err(error) => return Err(error),
-        },
-        Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
-        Err(Error::Usage(message)) => DesignOutcome::Failed(message),
-        Err(error @ (Error::Io { .. } | Error::Output { .. })) => return Err(error),
-    };
-    batch.store.write(&DesignRecord {
-        lumiduct_design: DESIGN_FORMAT,
-        build: BUILD.to_owned(),
-        study: study.hash.clone(),
-        design: design.number,
-        settings: settings(study, design),
-        outcome,
-    })?;
-    Ok(DesignEnd::Recorded)
+            Err(error @ (Error::Io { .. } | Error::Output { .. })) => return Err(error),
+        };
+        let record = DesignRecord {
+            lumiduct_design: DESIGN_FORMAT,
+            build: BUILD.to_owned(),
+            study: study.hash.clone(),
+            design: design.number,
+            settings: settings(study, design),
+            outcome,
+        };
+        batch.store.write(&record)?;
+        Ok(DesignEnd::Recorded(Box::new(record)))
+    }
 }
 
 /// The result of tracing; `None` if interrupted.
@@ -214,8 +253,12 @@ fn trace_job(
         }
     }
     let names = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
-    let measures = names
-        .filter_map(|name| Some((name.clone(), report.measures.values.get(name)?.clone())))
+    let measures = cost(study, design)
+        .into_iter()
+        .chain(
+            names
+                .filter_map(|name| Some((name.clone(), report.measures.values.get(name)?.clone()))),
+        )
         .collect();
     let replicates = study.measures.iter().filter_map(|name| {
         Some((name.clone(), measure::replicates(&job.scene, &traced.findings, name)?))
@@ -230,6 +273,29 @@ fn trace_job(
         paths: report.measures.paths,
         warnings: report.warnings,
     }))
+}
+
+/// What a design of a search costs, if that decides.
+fn cost(study: &Study, design: &Design) -> Option<(String, Measure)> {
+    let Plan::Search(SearchPlan { cost, .. }) = &study.plan else { return None };
+    let pairs = || study.parameters.iter().zip(&design.settings);
+    let own = |(parameter, setting): (&Parameter, &Setting)| {
+        Some(cost.get(&parameter.name)? * setting.number()?)
+    };
+    let mut units = study.parameters.iter().filter(|own| cost.contains_key(&own.name));
+    let first = units.next()?.unit.clone();
+    let unit = first.filter(|first| units.all(|own| own.unit.as_ref() == Some(first)));
+    let measure = Measure {
+        value: pairs().filter_map(own).sum(),
+        std_error: 0.0,
+        bias: None,
+        unit: unit.unwrap_or_else(|| "1".to_owned()),
+        batches: 0,
+        paths: 0,
+        estimator: Estimator::Forward,
+        status: Status::Ok,
+    };
+    Some((COST.to_owned(), measure))
 }
 
 /// The problems of a scene without file locations, which differ between machines.
@@ -250,49 +316,68 @@ fn sentences(diagnostics: &[Diagnostic]) -> String {
 }
 
 /// Progress of all designs in flight.
-struct Board<'a> {
+pub(crate) struct Board<'a> {
     wanted: usize,
     pending: usize,
     start: Instant,
     watch: &'a (dyn Fn(&BatchProgress) + Sync),
-    /// Designs that have ended, and the shares of those in flight.
-    state: Mutex<(usize, Vec<(usize, f64)>)>,
+    state: Mutex<BoardState>,
+}
+
+/// What changes on a board.
+#[derive(Default)]
+struct BoardState {
+    /// Designs that have ended.
+    ended: usize,
+    /// Numbers of those in flight, with the shares that are done.
+    in_flight: Vec<(usize, f64)>,
+    best: Option<BestDesign>,
 }
 
 impl<'a> Board<'a> {
-    fn new(wanted: usize, pending: usize, batch: &DesignBatch<'a>) -> Self {
-        let state = Mutex::new((0, Vec::new()));
+    fn new([wanted, pending]: [usize; 2], batch: &DesignBatch<'a>) -> Self {
+        let state = Mutex::default();
         Self { wanted, pending, start: Instant::now(), watch: batch.watch, state }
     }
 
     fn go_on(&self, design: usize, fraction: f64) {
         if let Ok(mut state) = self.state.lock() {
-            match state.1.iter_mut().find(|(number, _)| *number == design) {
+            match state.in_flight.iter_mut().find(|(number, _)| *number == design) {
                 Some(own) => own.1 = fraction,
-                None => state.1.push((design, fraction)),
+                None => state.in_flight.push((design, fraction)),
             }
+        }
+        self.show();
+    }
+
+    /// Shows another best design of a search.
+    pub(crate) fn show_best(&self, best: BestDesign) {
+        if let Ok(mut state) = self.state.lock() {
+            state.best = Some(best);
         }
         self.show();
     }
 
     fn end(&self, design: usize) {
         if let Ok(mut state) = self.state.lock() {
-            state.0 += 1;
-            state.1.retain(|(number, _)| *number != design);
+            state.ended += 1;
+            state.in_flight.retain(|(number, _)| *number != design);
         }
         self.show();
     }
 
     fn show(&self) {
         let Ok(state) = self.state.lock() else { return };
-        let (ended, in_flight) = (state.0, state.1.iter().map(|(_, share)| share).sum::<f64>());
+        let BoardState { ended, in_flight, best } = &*state;
+        let in_flight = in_flight.iter().map(|(_, share)| share).sum::<f64>();
         let found = self.wanted - self.pending;
         (self.watch)(&BatchProgress {
             done: found + ended,
             wanted: self.wanted,
             found,
-            fraction: ((ended as f64 + in_flight) / self.pending.max(1) as f64).min(1.0),
+            fraction: ((*ended as f64 + in_flight) / self.pending.max(1) as f64).min(1.0),
             elapsed: self.start.elapsed(),
+            best: *best,
         });
     }
 }

@@ -12,24 +12,28 @@ mod analysis;
 mod designs;
 mod execute;
 mod sampling;
+mod search;
 mod store;
 
-pub use execute::BatchProgress;
+pub use execute::{BatchProgress, BestDesign};
 pub use store::OnExisting;
 
 use crate::pipeline::{self, VERSION};
 use crate::study::designs::designs;
 use crate::study::execute::{DesignBatch, execute};
+use crate::study::search::{ProposalEnd, search};
 use crate::study::store::Store;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Shard};
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::{Problems, name_hint};
-use lumiduct_input::{Parameter, Plan, Project, Study, StudySettings, Tie, load_study};
+use lumiduct_input::{
+    COST, Move, Parameter, Plan, Project, Study, StudySettings, Tie, load_study, rewritten_scene,
+};
 use lumiduct_report::study::{
     DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
 };
-use lumiduct_report::{self as report, Existing, Folder, Written, is_among};
+use lumiduct_report::{self as report, Existing, Folder, OutputFile, Written, is_among};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -81,19 +85,46 @@ pub fn run_study(
 ) -> Result<FinishedStudy> {
     let study = load_study(path, &options.settings)?;
     expect_measures(&study)?;
+    if matches!(study.plan, Plan::Search(_)) && options.shard != Shard::WHOLE {
+        let why =
+            "a search cannot be split: each design depends on earlier results; leave out --shard";
+        return Err(Error::Usage(why.to_owned()));
+    }
     let all = designs(&study);
-    let facts = facts(&study, all.len());
+    let planned = match &study.plan {
+        Plan::Search(plan) => plan.designs as usize,
+        Plan::Grid
+        | Plan::OneAtATime
+        | Plan::List(_)
+        | Plan::LatinHypercube(_)
+        | Plan::Sobol(_)
+        | Plan::Tolerance(_) => all.len(),
+    };
+    let facts = facts(&study, planned);
     let dir = options.dir.clone().unwrap_or_else(|| default_dir(&study.name));
     let store = Store::open(&dir, &facts, &study.text, options.existing)?;
     let wanted: Vec<usize> =
-        options.shard.of(all.len() as u64).map(|index| index as usize + 1).collect();
+        options.shard.of(planned as u64).map(|index| index as usize + 1).collect();
     let jobs = options.jobs;
-    let batch = DesignBatch { study: &study, designs: &all, store: &store, jobs, interrupt, watch };
-    execute(&batch, &wanted)?;
+    let batch = DesignBatch { study: &study, store: &store, jobs, interrupt, watch };
+    // A search that runs out of designs ends with fewer.
+    let planned = match (&study.plan, &study.ranking) {
+        (Plan::Search(plan), Some(ranking)) => match search(&batch, plan, ranking)? {
+            ProposalEnd::Complete(designs) => designs,
+            ProposalEnd::Stopped => planned,
+        },
+        (_, _) => {
+            execute(&batch, &all, &wanted)?;
+            planned
+        }
+    };
+    let facts = StudyFacts { designs: planned, ..facts };
     let records = store.records()?;
+    let wanted = wanted.into_iter().filter(|design| *design <= planned);
+    let wanted: Vec<usize> = wanted.collect();
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
     let warnings = study.warnings.clone();
-    if records.len() < all.len() {
+    if records.len() < planned {
         return Ok(FinishedStudy {
             facts,
             report: None,
@@ -104,8 +135,10 @@ pub fn run_study(
         });
     }
     interrupt.begin(Activity::Computing);
-    let records = records.into_values().collect();
-    let (report, written) = finish(&store, facts.clone(), records, &study.text, interrupt)?;
+    let records: Vec<DesignRecord> = records.into_values().collect();
+    let report = analysed(facts.clone(), records);
+    let scene = report.best_passing().map(|best| best_scene(&study, &store, best)).transpose()?;
+    let written = finish(&store, &report, (&study.text, scene), interrupt)?;
     Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings })
 }
 
@@ -131,6 +164,10 @@ pub fn merge_study(
         return Err(Error::Usage("there are no parts to merge".into()));
     };
     let facts = first.facts().clone();
+    if facts.plan.is_search() {
+        let why = format!("{} holds a search, which has no parts to merge", first.path().display());
+        return Err(Error::Usage(why));
+    }
     if let Some(other) = stores.iter().find(|other| !other.facts().is_same_study(&facts)) {
         return Err(Error::Usage(format!(
             "{} and {} hold results of different studies",
@@ -168,7 +205,8 @@ pub fn merge_study(
     }
     let records: Vec<DesignRecord> = whole.records()?.into_values().collect();
     let done = [records.len(), facts.designs];
-    let (report, written) = finish(&whole, facts.clone(), records, &text, &Interrupt::default())?;
+    let report = analysed(facts.clone(), records);
+    let written = finish(&whole, &report, (&text, None), &Interrupt::default())?;
     Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
 }
 
@@ -177,27 +215,48 @@ fn default_dir(name: &str) -> PathBuf {
     Path::new("reports/studies").join(name)
 }
 
-/// Writes the results of a study whose designs all have records.
+/// A study whose designs all have records, with what follows from them.
+fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyReport {
+    let analysis = analysis::analysis(&facts, &designs);
+    StudyReport { facts, designs, analysis }
+}
+
+/// Writes the results of a study, with its file and the scene that a search has found.
 fn finish(
     store: &Store,
-    facts: StudyFacts,
-    designs: Vec<DesignRecord>,
-    text: &str,
+    report: &StudyReport,
+    (text, scene): (&str, Option<OutputFile>),
     interrupt: &Interrupt,
-) -> Result<(StudyReport, Written)> {
-    let analysis = analysis::analysis(&facts, &designs);
-    let report = StudyReport { facts, designs, analysis };
+) -> Result<Written> {
     // Results follow from the records: older ones of the same study may be replaced.
     let folder = Folder::open(store.lock()?, Existing::Replace, None)?;
-    let files = study_files(&report, text)?;
+    let files = study_files(report, text, scene)?;
     interrupt.begin(Activity::Writing);
-    let written = folder.write(&files)?;
-    Ok((report, written))
+    folder.write(&files)
+}
+
+/// The scene of a design, ready to run from the folder of the results.
+fn best_scene(study: &Study, store: &Store, best: &DesignRecord) -> Result<OutputFile> {
+    let settings = study.parameters.iter().filter_map(|parameter| {
+        best.settings.get(&parameter.name).map(|setting| parameter.overrides(setting))
+    });
+    let way = Move { from: study.scene.parent().unwrap_or(Path::new("")), to: store.path() };
+    let comment = [format!(
+        "Found by the study `{}` (digest {}): design {} of the scene `{}`.",
+        study.name, study.hash, best.design, study.base.name
+    )];
+    let overrides = study.common.with(settings.flatten()).overrides;
+    let text = rewritten_scene(&study.base.text, &overrides, way, &comment)?;
+    let name = format!("{}_best.toml", study.base.name);
+    Ok(OutputFile { name, bytes: text.into_bytes() })
 }
 
 /// Refuses measures that the scene does not have, before any work is done.
 fn expect_measures(study: &Study) -> Result<()> {
     let measures = study.measures.iter().enumerate();
+    // It was appended, and is no measure of the scene.
+    let has_cost = study.ranking.as_ref().is_some_and(|own| own.measure == COST);
+    let measures = measures.filter(|(_, name)| !(has_cost && *name == COST));
     let measures = measures.map(|(index, name)| (Key::of(&["measures"]).index(index), name));
     let check = |index| Key::of(&["check"]).index(index).field("measure");
     let checks = study.checks.iter().enumerate().map(|(index, own)| (check(index), &own.measure));
@@ -242,6 +301,7 @@ fn facts(study: &Study, designs: usize) -> StudyFacts {
             Plan::LatinHypercube(samples) => PlanFacts::LatinHypercube(samples.seed),
             Plan::Sobol(samples) => PlanFacts::Sobol(samples.seed),
             Plan::Tolerance(samples) => PlanFacts::Tolerance(samples.seed),
+            Plan::Search(plan) => PlanFacts::Search(plan.seed),
         },
         designs,
         seed: run.seed,

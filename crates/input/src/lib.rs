@@ -78,10 +78,10 @@ pub use project::Project;
 pub use rewrite::{Move, rewritten_scene};
 pub use scatter::measured_sheet;
 pub use spec::optimise::Vary;
-pub use spec::study::{Best, Keep, Ranking, Samples};
+pub use spec::study::{Best, Keep, Ranking, Samples, SearchPlan};
 pub use study::{
-    DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation, OptimisationKind,
-    Parameter, PatternFeedback, Plan, Setting, Study, StudySettings, Tie, column,
+    COST, DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation,
+    OptimisationKind, Parameter, PatternFeedback, Plan, Setting, Study, StudySettings, Tie, column,
     load_optimisation, load_study,
 };
 

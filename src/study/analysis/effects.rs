@@ -13,7 +13,10 @@ use std::cmp::Ordering;
 pub(super) fn effects(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Effect> {
     match facts.plan {
         PlanFacts::Grid | PlanFacts::OneAtATime | PlanFacts::List => {}
-        PlanFacts::LatinHypercube(_) | PlanFacts::Sobol(_) | PlanFacts::Tolerance(_) => {
+        PlanFacts::LatinHypercube(_)
+        | PlanFacts::Sobol(_)
+        | PlanFacts::Tolerance(_)
+        | PlanFacts::Search(_) => {
             return Vec::new();
         }
     }

@@ -17,7 +17,8 @@ pub(super) fn failures(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Fail
         | PlanFacts::OneAtATime
         | PlanFacts::List
         | PlanFacts::LatinHypercube(_)
-        | PlanFacts::Sobol(_) => return Vec::new(),
+        | PlanFacts::Sobol(_)
+        | PlanFacts::Search(_) => return Vec::new(),
     }
     if facts.checks.is_empty() {
         return Vec::new();

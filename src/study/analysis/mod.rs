@@ -41,7 +41,7 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
 }
 
 #[cfg(test)]
-pub(super) mod testing {
+pub(crate) mod testing {
     use indexmap::IndexMap;
     use lumiduct_core::measure::{Measure, Replicates, Status};
     use lumiduct_core::plan::Estimator;
@@ -85,7 +85,7 @@ pub(super) mod testing {
     }
 
     /// A design with a value and four groups of batches: the value plus the noise of each group.
-    pub(super) fn design(
+    pub(crate) fn design(
         number: usize,
         settings: [f64; 2],
         value: f64,

@@ -1,10 +1,11 @@
 //! Which design is the best, and with what certainty.
 
 use crate::study::analysis::combine::{Term, combine};
+use crate::study::search::score;
 use lumiduct_input::Best;
 use lumiduct_report::study::{DesignRecord, Ranked, StudyFacts};
 
-/// All traced designs, the best first; ties in the order of their numbers.
+/// All traced designs, the best first; ties in the order of their numbers. Of a search those that fail a check come last, by their shortfall.
 pub(super) fn ranked(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Ranked> {
     let Some(ranking) = &facts.ranking else { return Vec::new() };
     let value = |design: &DesignRecord| {
@@ -13,9 +14,10 @@ pub(super) fn ranked(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Ranked
     };
     let mut order: Vec<(f64, &DesignRecord)> =
         designs.iter().filter_map(|design| Some((value(design)?, design))).collect();
-    order.sort_by(|(a, _), (b, _)| match ranking.best {
-        Best::Highest => b.total_cmp(a),
-        Best::Lowest => a.total_cmp(b),
+    order.sort_by(|(a, one), (b, other)| match (facts.plan.is_search(), ranking.best) {
+        (true, _) => score(ranking, one).total_cmp(&score(ranking, other)),
+        (false, Best::Highest) => b.total_cmp(a),
+        (false, Best::Lowest) => a.total_cmp(b),
     });
     let Some(&(_, best)) = order.first() else { return Vec::new() };
     let sign = match ranking.best {

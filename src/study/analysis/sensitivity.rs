@@ -20,7 +20,8 @@ pub(super) fn sensitivities(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec
         PlanFacts::LatinHypercube(_) | PlanFacts::Sobol(_) | PlanFacts::Tolerance(_) => {
             regression(facts, designs, measure)
         }
-        PlanFacts::OneAtATime | PlanFacts::List => None,
+        // A search crowds about the best: no sample of the ranges.
+        PlanFacts::OneAtATime | PlanFacts::List | PlanFacts::Search(_) => None,
     };
     facts.measures.iter().filter_map(of).collect()
 }

@@ -61,6 +61,28 @@ pub fn verdict(check: &Check, measures: &Measures) -> Verdict {
     }
 }
 
+/// How far a measure is from passing a check, relative to what is asked for: 0 if it passes, infinite where it is not known.
+pub fn shortfall(check: &Check, measure: &Measure) -> f64 {
+    if judge(check, measure).outcome == CheckOutcome::Passed {
+        return 0.0;
+    }
+    let relative = |lack: f64, wanted: f64| {
+        let scale = if wanted == 0.0 { 1.0 } else { wanted.abs() };
+        if lack.is_nan() { f64::INFINITY } else { lack.max(0.0) / scale }
+    };
+    let (value, margin) = (measure.value, LIMIT_ERRORS * measure.total_error());
+    let min = check.min.map(|min| relative(min + margin - value, min));
+    let max = check.max.map(|max| relative(value + margin - max, max));
+    let equals = check.equals.map(|expected| {
+        let [allowed, open] = tolerance(check, measure);
+        relative((value - expected).abs() + open - allowed, expected)
+    });
+    let noise = check.max_std_error.map(|most| relative(measure.std_error - most, most));
+    // What cannot be relied on is worse than any number.
+    let doubt = doubt(measure).map(|_| 1.0);
+    [min, max, equals, noise, doubt].into_iter().flatten().sum()
+}
+
 fn judge(check: &Check, measure: &Measure) -> Verdict {
     let mut findings: Vec<(CheckOutcome, String)> = Vec::new();
     findings.extend(check.min.map(|min| limit(measure, min, Bound::Least)));
@@ -150,17 +172,24 @@ fn rounding(measure: &Measure, expected: f64) -> f64 {
     if measure.total_error() <= room { room } else { 0.0 }
 }
 
-fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, String) {
-    let deviation = measure.value - expected;
+/// The deviation from `equals` that passes, and how far beyond it a check is undecided.
+fn tolerance(check: &Check, measure: &Measure) -> [f64; 2] {
     let error = measure.total_error();
     let default = if check.within.is_some() { 0.0 } else { DEFAULT_SIGMAS };
     let wanted = check.sigmas.unwrap_or(default);
     // Zero errors allow nothing, even where the error is not known.
     let by_error = if wanted > 0.0 { wanted * error } else { 0.0 };
-    let rounding = rounding(measure, expected);
-    let allowed = by_error.max(check.within.unwrap_or(0.0)).max(rounding);
     let open =
         if check.within.is_some() && check.sigmas.is_none() { LIMIT_ERRORS * error } else { 0.0 };
+    [by_error.max(check.within.unwrap_or(0.0)), open]
+}
+
+fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, String) {
+    let deviation = measure.value - expected;
+    let error = measure.total_error();
+    let [allowed, open] = tolerance(check, measure);
+    let rounding = rounding(measure, expected);
+    let allowed = allowed.max(rounding);
     let z = sigmas(measure.value, error, expected);
     let errors =
         if rounding == 0.0 && z.is_finite() { format!(" ({z:.1} errors)") } else { String::new() };
@@ -243,6 +272,26 @@ mod tests {
         let mut biased = measure(0.565, 0.01, "lm");
         biased.bias = Some(0.01);
         assert_eq!(outcome(&most, &biased), CheckOutcome::Undecided);
+    }
+
+    #[test]
+    fn a_shortfall_is_0_only_where_the_check_passes() {
+        let least = Check { min: Some(0.5), ..check() };
+        assert_eq!(shortfall(&least, &measure(0.54, 0.01, "lm")), 0.0);
+        let open = shortfall(&least, &measure(0.52, 0.01, "lm"));
+        assert!((open - 0.02).abs() < 1e-12, "{open}");
+        let failed = shortfall(&least, &measure(0.25, 0.0, "lm"));
+        assert_eq!(failed, 0.5);
+        let exact = Check { equals: Some(2.0), within: Some(0.1), ..check() };
+        assert_eq!(shortfall(&exact, &measure(2.05, 0.0, "lm")), 0.0);
+        let off = shortfall(&exact, &measure(3.1, 0.0, "lm"));
+        assert!((off - 0.5).abs() < 1e-12, "{off}");
+        let sharp = Check { max_std_error: Some(0.01), ..check() };
+        assert_eq!(shortfall(&sharp, &measure(1.0, 0.02, "lm")), 1.0);
+        // What is not known is never better than a number.
+        assert_eq!(shortfall(&least, &measure(f64::NAN, 0.01, "lm")), f64::INFINITY);
+        let few = Measure { status: Status::TooFew, ..measure(0.9, 0.01, "lm") };
+        assert_eq!(shortfall(&least, &few), 1.0);
     }
 
     #[test]

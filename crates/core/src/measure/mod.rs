@@ -43,7 +43,7 @@ pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use cell_colours::ColourTable;
 pub use cells::not_below_zero;
-pub use check::{CheckOutcome, Verdict, nearest, verdict};
+pub use check::{CheckOutcome, Verdict, nearest, shortfall, verdict};
 pub use colour::SensorSpectrum;
 pub use map::{MapAxes, SensorMap};
 pub use paths::{Action, ClassExtent, LostPaths, PathClass, PathStep, SensorPaths, strongest};

@@ -52,7 +52,7 @@ pub(crate) struct StudySpec {
 }
 
 /// A quantity that is varied. `grid` and `one_at_a_time` need `values`, `range` or `choices`; `latin_hypercube` and `sobol`
-/// take any of the four; `tolerance` needs `spread` or `choices`; `list` takes values from its file, and here only `choices`.
+/// take any of the four; `tolerance` needs `spread` or `choices`; `search` needs `range`; `list` takes values from its file, and here only `choices`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct ParameterSpec {
     /// Keys of the scene that the parameter sets, all at once, such as `solids.pipe.sweep.path.0.straight_mm`.
@@ -115,7 +115,7 @@ pub(crate) struct RangeSpec {
     pub from: f64,
     /// The last value.
     pub to: f64,
-    /// Number of values in a grid; samples take any value between the ends.
+    /// Number of values in a grid; samples and a search take any value between the ends.
     #[serde(default = "two")]
     #[schemars(range(min = 2, max = 1000))]
     pub count: u32,
@@ -170,6 +170,25 @@ pub(crate) enum PlanSpec {
     Sobol(Samples),
     /// Independent random samples, as production scatters them; they give the share of designs that pass.
     Tolerance(Samples),
+    /// Designs that a search proposes one after the other, to find the best by `ranking` or `cost` among those that pass every
+    /// `[[check]]`.
+    Search(SearchPlan),
+}
+
+/// A search for the best design: Nelder and Mead's simplex within the ranges, restarted where it has converged. It begins at the
+/// values of the scene. What is best is set by `ranking` or by `cost`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SearchPlan {
+    /// Most designs to trace.
+    #[schemars(range(min = 4, max = 10_000))]
+    pub designs: u32,
+    /// Seed of the restarts. Light has a seed of its own, in `run`.
+    #[serde(default = "seed")]
+    pub seed: u64,
+    /// What a design costs, by parameter: the sum of these factors times the values, to be the lowest among the designs that pass.
+    /// It is recorded as the measure `cost`.
+    #[serde(default)]
+    pub cost: IndexMap<String, f64>,
 }
 
 /// The designs of a table.

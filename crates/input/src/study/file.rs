@@ -100,7 +100,8 @@ fn designs_file(spec: &StudySpec) -> Option<(Key, String)> {
         | PlanSpec::OneAtATime
         | PlanSpec::LatinHypercube(_)
         | PlanSpec::Sobol(_)
-        | PlanSpec::Tolerance(_) => None,
+        | PlanSpec::Tolerance(_)
+        | PlanSpec::Search(_) => None,
     }
 }
 

@@ -10,13 +10,15 @@ mod rules;
 
 pub use optimisation::feedback::{LawKind, LightTarget, PatternFeedback};
 pub use optimisation::{Optimisation, OptimisationKind, load_optimisation};
-pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
+pub use parameters::{COST, DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
 
 use crate::keys::{Key, Places};
 use crate::lower::plan;
 use crate::problems::Problems;
 use crate::spec::solid::{ShapedSolidSpec, SolidSpec};
-use crate::spec::study::{Keep, PlanSpec, Ranking, Samples, StudyRunSpec, StudySpec};
+use crate::spec::study::{
+    Best, Keep, PlanSpec, Ranking, Samples, SearchPlan, StudyRunSpec, StudySpec,
+};
 use crate::study::file::{StudyDraft, read};
 use crate::texts::argument_label;
 use crate::{Draft, Job, Settings, draft, load};
@@ -63,6 +65,8 @@ pub enum Plan {
     Sobol(Samples),
     /// Independent random samples.
     Tolerance(Samples),
+    /// Designs that a search proposes one after the other.
+    Search(SearchPlan),
 }
 
 /// A study to run.
@@ -137,6 +141,8 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let identity = serde_json::to_string(&(NUMERICS, &base.run, settings));
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
+    let has_cost = matches!(&plan, Plan::Search(own) if !own.cost.is_empty());
+    let cost = has_cost.then(|| Ranking { measure: COST.to_owned(), best: Best::Lowest });
     Ok(Study {
         name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
         title: spec.title,
@@ -146,8 +152,12 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
         common,
         parameters,
         plan,
-        measures: spec.measures,
-        ranking: spec.ranking,
+        measures: spec
+            .measures
+            .into_iter()
+            .chain(cost.is_some().then(|| COST.to_owned()))
+            .collect(),
+        ranking: cost.or(spec.ranking),
         checks: spec.check.clone(),
         keep: spec.keep,
         text: places.root_text().to_owned(),
@@ -264,6 +274,7 @@ fn lower_plan(spec: &PlanSpec, rows: Vec<Vec<Setting>>) -> Plan {
         PlanSpec::LatinHypercube(own) => Plan::LatinHypercube(own.clone()),
         PlanSpec::Sobol(own) => Plan::Sobol(own.clone()),
         PlanSpec::Tolerance(own) => Plan::Tolerance(own.clone()),
+        PlanSpec::Search(own) => Plan::Search(own.clone()),
         PlanSpec::List(_) => Plan::List(rows),
     }
 }

@@ -12,6 +12,9 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// The measure of what a design of a search costs.
+pub const COST: &str = "cost";
+
 /// The setting of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -210,7 +213,10 @@ fn nominal(ties: &[Tie], base: &Job) -> Setting {
 fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
     let is_stepped = match plan {
         PlanSpec::Grid | PlanSpec::OneAtATime => true,
-        PlanSpec::LatinHypercube(_) | PlanSpec::Sobol(_) | PlanSpec::Tolerance(_) => false,
+        PlanSpec::LatinHypercube(_)
+        | PlanSpec::Sobol(_)
+        | PlanSpec::Tolerance(_)
+        | PlanSpec::Search(_) => false,
         PlanSpec::List(_) => return Domain::Listed,
     };
     let level =

@@ -4,12 +4,12 @@ use crate::keys::{Key, Places};
 use crate::lower::context::Scope;
 use crate::lower::names::{check_length, check_name, check_title};
 use crate::overrides::parse_key;
-use crate::problems::Problems;
+use crate::problems::{Problems, name_hint};
 use crate::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
     TiedKeySpec,
 };
-use crate::study::parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
+use crate::study::parameters::{COST, DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
 use crate::texts::argument_label;
 use crate::{Job, Settings, draft};
 use indexmap::IndexMap;
@@ -51,6 +51,43 @@ pub(super) fn check(
     check_set(spec, problems);
     check_overrides(spec, overrides, problems);
     check_count(spec, problems);
+    check_search(spec, problems);
+}
+
+/// Notes a search that does not say what is best, or says it twice.
+fn check_search(spec: &StudySpec, problems: &mut Problems) {
+    let PlanSpec::Search(plan) = &spec.plan else { return };
+    let key = Key::of(&["plan", "search"]);
+    match (&spec.ranking, plan.cost.is_empty()) {
+        (Some(_), true) | (None, false) => {}
+        (None, true) => {
+            problems
+                .error(&key, "a search needs to know which design is the best")
+                .hint("add `[ranking]` with a `measure`, or `cost` with factors of parameters");
+        }
+        (Some(_), false) => {
+            problems
+                .error(&key.field("cost"), "`ranking` already says which design is the best")
+                .hint("leave out `cost`, or replace `[ranking]` by a `[[check]]` on its measure");
+        }
+    }
+    for (name, factor) in
+        plan.cost.iter().filter(|(_, factor)| **factor == 0.0 || !factor.is_finite())
+    {
+        let message = format!("the factor {factor} leaves nothing to compare");
+        problems.error(&key.field("cost").field(name), message).hint("leave it out");
+    }
+    if !plan.cost.is_empty() && spec.measures.iter().any(|name| name == COST) {
+        problems
+            .error(&Key::of(&["measures"]), "`cost` is recorded by itself")
+            .hint("leave it out");
+    }
+    for name in plan.cost.keys().filter(|name| !spec.parameters.contains_key(*name)) {
+        let hint = name_hint(name, spec.parameters.keys().map(String::as_str));
+        problems
+            .error(&key.field("cost").field(name), format!("there is no parameter `{name}`"))
+            .hint(hint);
+    }
 }
 
 /// Notes a unit that is invalid for a column.
@@ -111,6 +148,7 @@ fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Prob
         }
         PlanSpec::Sobol(_) => ("sobol", &["values", "range", "choices", "spread"]),
         PlanSpec::Tolerance(_) => ("tolerance", &["choices", "spread"]),
+        PlanSpec::Search(_) => ("search", &["range"]),
         PlanSpec::List(_) => ("list", &["choices"]),
     };
     let needs = format!("the plan `{plan}` takes one of `{}`", taken.join("`, `"));
@@ -262,7 +300,8 @@ fn check_count(spec: &StudySpec, problems: &mut Problems) {
         | PlanSpec::List(_)
         | PlanSpec::LatinHypercube(_)
         | PlanSpec::Sobol(_)
-        | PlanSpec::Tolerance(_) => return,
+        | PlanSpec::Tolerance(_)
+        | PlanSpec::Search(_) => return,
     }
     let levels = |own: &ParameterSpec| {
         let values = own.values.as_ref().map(Vec::len);

@@ -4,11 +4,11 @@ use crate::page::{Block, PagePart, table};
 use crate::study::edge::edge_remark;
 use crate::study::{
     DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, Sensitivity,
-    SensitivityMethod, StudyReport, ValueWithError,
+    SensitivityMethod, StudyFacts, StudyReport, ValueWithError,
 };
 use crate::words::{outcome_word, quantity};
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
-use lumiduct_core::measure::CheckOutcome;
+use lumiduct_core::measure::{CheckOutcome, Measure};
 use lumiduct_input::{Best, Domain, Setting};
 use std::fmt::Write;
 
@@ -61,6 +61,13 @@ pub(super) fn verdict(report: &StudyReport) -> String {
     if bad.off_target > 0 {
         _ = write!(text, "; {} did not reach their target error", bad.off_target);
     }
+    match report.best_passing() {
+        Some(best) => _ = write!(text, "; the best that passes is design {}", best.design),
+        None if report.facts.plan.is_search() => {
+            text += "; no design passes, so the search found none";
+        }
+        None => {}
+    }
     text
 }
 
@@ -102,17 +109,42 @@ fn ranking(report: &StudyReport) -> Option<PagePart> {
         head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
     let rows = report.analysis.ranked.iter().enumerate().filter_map(|(place, own)| {
         let design = report.designs.iter().find(|design| design.design == own.design)?;
-        let value = design.measure(&ranking.measure).map_or(String::new(), quantity);
+        let value = design.measure(&ranking.measure).map_or(String::new(), measured);
         let behind = own.behind.map_or("the best".into(), |behind| difference(&behind));
         let row = [(place + 1).to_string(), own.design.to_string()].into_iter();
         Some(row.chain(settings(report, design)).chain([value, behind]).collect())
     });
     let mut blocks = vec![Block::Words { text: words }, table(&head, rows.collect())];
-    blocks.extend(edge_remark(report).map(|text| Block::Words { text }));
+    blocks.extend(report.best_passing().map(|_| Block::Words { text: by_chance(report) }));
+    let is_found = !report.facts.plan.is_search() || report.best_passing().is_some();
+    blocks.extend(edge_remark(report).filter(|_| is_found).map(|text| Block::Words { text }));
     Some(part("Ranking", blocks))
 }
 
+/// What noise means for the result of a search.
+fn by_chance(report: &StudyReport) -> String {
+    let StudyFacts { scene, seed, .. } = &report.facts;
+    format!(
+        "Designs that fail a check come last, by their shortfall. The best of many noisy designs is partly luck: check its scene with other \
+            random numbers, `lumiduct run {scene}_best.toml --seed {}`.",
+        seed.wrapping_add(1)
+    )
+}
+
+/// A measure with its error, if it has one.
+fn measured(found: &Measure) -> String {
+    match found.unit.as_str() {
+        _ if found.std_error > 0.0 || found.bias.is_some() => quantity(found),
+        "1" => format_value(found.value),
+        unit => format!("{} {unit}", format_value(found.value)),
+    }
+}
+
 fn difference(behind: &ValueWithError) -> String {
+    // What a design costs has no noise.
+    if behind.std_error == 0.0 && behind.value != 0.0 {
+        return format_value(behind.value);
+    }
     let number = format_with_error(behind.value, behind.std_error);
     let told = match behind.evidence {
         Pairing::Paired => "",
@@ -195,7 +227,7 @@ fn designs(report: &StudyReport) -> PagePart {
         let values: Vec<String> = match &design.outcome {
             DesignOutcome::Done(result) => {
                 let value =
-                    |name: &String| result.measures.get(name).map_or(String::new(), quantity);
+                    |name: &String| result.measures.get(name).map_or(String::new(), measured);
                 facts.measures.iter().map(value).collect()
             }
             DesignOutcome::Failed(reason) => {
@@ -290,6 +322,9 @@ fn run(report: &StudyReport) -> PagePart {
         PlanFacts::LatinHypercube(seed) => format!("Latin hypercube, seed {seed}"),
         PlanFacts::Sobol(seed) => format!("scrambled Sobol sequence, seed {seed}"),
         PlanFacts::Tolerance(seed) => format!("independent random samples, seed {seed}"),
+        PlanFacts::Search(seed) => {
+            format!("search by Nelder and Mead's simplex with restarts, seed {seed}")
+        }
     };
     let mut lines = vec![
         format!("study {}, hash {}", facts.name, facts.hash),

@@ -11,6 +11,7 @@ use crate::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport}
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::CheckOutcome;
+use lumiduct_input::Best;
 
 /// Most curves of a response plot; more cannot be distinguished.
 const MOST_CURVES: usize = 12;
@@ -57,6 +58,7 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
             });
         }
     }
+    figures.extend(history(report));
     for effect in &report.analysis.effects {
         figures.push(Figure {
             file: format!("effect.{}.{}.png", effect.measure, effect.parameter),
@@ -102,7 +104,8 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         PlanFacts::OneAtATime
         | PlanFacts::LatinHypercube(_)
         | PlanFacts::Sobol(_)
-        | PlanFacts::Tolerance(_) => return None,
+        | PlanFacts::Tolerance(_)
+        | PlanFacts::Search(_) => return None,
     }
     let levels = |parameter: &&ParameterFacts| numbers_of(parameter, &report.designs).len();
     let parameters = &report.facts.parameters;
@@ -144,6 +147,58 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     })
 }
 
+/// The measure that decides over the designs of a search, and the best so far.
+fn history(report: &StudyReport) -> Option<Figure> {
+    report.best_passing()?;
+    let (measure, best) = report.leading();
+    let point = |design: &DesignRecord| {
+        let found = design.measure(measure)?;
+        let (x, y) = (design.design as f64, found.value);
+        y.is_finite().then_some(SeriesPoint { x, y, std_error: found.total_error() })
+    };
+    let (good, bad): (Vec<&DesignRecord>, Vec<&DesignRecord>) =
+        report.designs.iter().partition(|design| design.passes());
+    let [good, bad] =
+        [good, bad].map(|own| own.into_iter().filter_map(point).collect::<Vec<SeriesPoint>>());
+    let mut lead: Vec<SeriesPoint> = Vec::new();
+    for point in &good {
+        let is_ahead = |last: &SeriesPoint| match best {
+            Best::Highest => point.y > last.y,
+            Best::Lowest => point.y < last.y,
+        };
+        match lead.last().copied() {
+            Some(last) if !is_ahead(&last) => {}
+            Some(last) => lead.extend([SeriesPoint { x: point.x, ..last }, *point]),
+            None => lead.push(*point),
+        }
+    }
+    let end = report.designs.len() as f64;
+    lead.extend(lead.last().copied().map(|last| SeriesPoint { x: end, ..last }));
+    let series = [
+        ("best so far", lead, SeriesForm::Line, ErrorForm::Hidden),
+        ("designs that pass", good, SeriesForm::Dots, ErrorForm::Bars),
+        ("others", bad, SeriesForm::Dots, ErrorForm::Bars),
+    ];
+    let series = series.into_iter().filter(|(_, points, ..)| !points.is_empty());
+    let plot = LinePlot {
+        title: format!("{measure} in the search"),
+        subtitle: "bars: one standard error, with bias where there is one".to_owned(),
+        x_label: "design".to_owned(),
+        y_label: measure_label(report, measure),
+        scale: AxisScale::Linear,
+        series: series
+            .map(|(name, points, form, errors)| {
+                PlotSeries::new(name.to_owned(), points, form, errors)
+            })
+            .collect(),
+    };
+    Some(Figure {
+        file: "history.png".to_owned(),
+        label: format!("{measure} of the designs in the order of the search"),
+        drawing: StudyDrawing::Curves(plot, report.unit(measure).to_owned()),
+    })
+}
+
 /// A parameter with its setting in a design: "leg 5 mm".
 pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
@@ -156,7 +211,9 @@ pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -
 fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     match report.facts.plan {
         PlanFacts::LatinHypercube(_) | PlanFacts::Sobol(_) | PlanFacts::Tolerance(_) => {}
-        PlanFacts::Grid | PlanFacts::OneAtATime | PlanFacts::List => return None,
+        PlanFacts::Grid | PlanFacts::OneAtATime | PlanFacts::List | PlanFacts::Search(_) => {
+            return None;
+        }
     }
     let values: Vec<f64> = report
         .designs

@@ -27,7 +27,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
         masthead: masthead(facts.whole_project().as_ref()),
         description: facts.description.as_ref().map(|text| text.trim().to_owned()),
         verdict: verdict(report),
-        standing: match (facts.checks.is_empty(), report.counts().is_clean()) {
+        standing: match (facts.checks.is_empty(), report.is_good()) {
             (_, false) => Standing::Bad,
             (true, true) => Standing::Open,
             (false, true) => Standing::Good,

@@ -34,18 +34,23 @@ pub(crate) const SUMMARY: &str = "study.json";
 /// Version of the layout of that file.
 pub(crate) const SUMMARY_FORMAT: u32 = 1;
 
-/// All files of a study but its manifest and its records, in the reproducible order.
+/// All files of a study but its manifest and its records, in the reproducible order; `scene` is that of the best design of a search.
 ///
 /// # Errors
 ///
 /// `Error::Output` if a figure cannot be drawn, or a table, a page or the summary cannot be composed.
-pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputFile>> {
+pub fn study_files(
+    report: &StudyReport,
+    study_text: &str,
+    scene: Option<OutputFile>,
+) -> Result<Vec<OutputFile>> {
     let mut files = tables::files(report)?;
     let figures = figures::figures(report);
     for figure in &figures {
         files.push(figure.file()?);
     }
     files.push(OutputFile::text(format!("{}.toml", report.facts.name), study_text.to_owned()));
+    files.extend(scene);
     let logo = report.facts.logo.clone();
     files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
     files.push(OutputFile::text("study.md", page::page(report, &figures)));

@@ -90,6 +90,23 @@ pub enum PlanFacts {
     Sobol(u64),
     /// Independent random samples; their seed.
     Tolerance(u64),
+    /// Designs that a search proposes one after the other; its seed.
+    Search(u64),
+}
+
+impl PlanFacts {
+    /// Whether designs follow from the results of those before.
+    pub fn is_search(self) -> bool {
+        match self {
+            Self::Search(_) => true,
+            Self::Grid
+            | Self::OneAtATime
+            | Self::List
+            | Self::LatinHypercube(_)
+            | Self::Sobol(_)
+            | Self::Tolerance(_) => false,
+        }
+    }
 }
 
 /// A quantity that is varied.
@@ -192,6 +209,11 @@ impl DesignRecord {
         self.result()?.measures.get(name)
     }
 
+    /// Whether it was traced and passes every check.
+    pub fn passes(&self) -> bool {
+        self.result().is_some() && self.verdict().is_none_or(|own| own == CheckOutcome::Passed)
+    }
+
     /// The worst outcome of its checks: failed before undecided before passed; `None` without checks or a result.
     pub fn verdict(&self) -> Option<CheckOutcome> {
         self.result()?.checks.iter().map(|check| check.verdict.outcome).max()
@@ -216,6 +238,25 @@ impl StudyReport {
         match &self.facts.ranking {
             Some(ranking) => (&ranking.measure, ranking.best),
             None => (self.facts.measures.first().map_or("", String::as_str), Best::Highest),
+        }
+    }
+
+    /// The best design of a search, if any passes every check.
+    pub fn best_passing(&self) -> Option<&DesignRecord> {
+        if !self.facts.plan.is_search() {
+            return None;
+        }
+        let best = self.analysis.ranked.first()?.design;
+        let best = self.designs.iter().find(|design| design.design == best)?;
+        best.passes().then_some(best)
+    }
+
+    /// Whether every design is as requested or, of a search, one is found.
+    pub fn is_good(&self) -> bool {
+        if self.facts.plan.is_search() {
+            self.best_passing().is_some()
+        } else {
+            self.counts().is_clean()
         }
     }
 
@@ -260,7 +301,7 @@ pub struct StudyCounts {
 
 impl StudyCounts {
     /// Whether every design is as requested.
-    pub fn is_clean(self) -> bool {
+    fn is_clean(self) -> bool {
         let Self { broken, failed, undecided, off_target } = self;
         broken + failed + undecided + off_target == 0
     }

@@ -10,10 +10,9 @@ use crate::study::store::Store;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use lumiduct_base::number::{format_value, format_with_error};
-use lumiduct_core::measure::{self, Measure, Status};
-use lumiduct_core::plan::Estimator;
+use lumiduct_core::measure;
 use lumiduct_core::transport::{Interrupt, batch_paths};
-use lumiduct_input::{COST, Job, Keep, Parameter, Plan, SearchPlan, Setting, Settings, Study};
+use lumiduct_input::{Job, Keep, Setting, Settings, Study};
 use lumiduct_report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
 use lumiduct_report::{self as report, Existing, Folder, FolderLock};
 use std::sync::Mutex;
@@ -253,7 +252,8 @@ fn trace_job(
         }
     }
     let names = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
-    let measures = cost(study, design)
+    let cost = study.cost.as_ref().map(|own| own.measure(&study.parameters, &design.settings));
+    let measures = cost
         .into_iter()
         .chain(
             names
@@ -273,29 +273,6 @@ fn trace_job(
         paths: report.measures.paths,
         warnings: report.warnings,
     }))
-}
-
-/// What a design of a search costs, if that decides.
-fn cost(study: &Study, design: &Design) -> Option<(String, Measure)> {
-    let Plan::Search(SearchPlan { cost, .. }) = &study.plan else { return None };
-    let pairs = || study.parameters.iter().zip(&design.settings);
-    let own = |(parameter, setting): (&Parameter, &Setting)| {
-        Some(cost.get(&parameter.name)? * setting.number()?)
-    };
-    let mut units = study.parameters.iter().filter(|own| cost.contains_key(&own.name));
-    let first = units.next()?.unit.clone();
-    let unit = first.filter(|first| units.all(|own| own.unit.as_ref() == Some(first)));
-    let measure = Measure {
-        value: pairs().filter_map(own).sum(),
-        std_error: 0.0,
-        bias: None,
-        unit: unit.unwrap_or_else(|| "1".to_owned()),
-        batches: 0,
-        paths: 0,
-        estimator: Estimator::Forward,
-        status: Status::Ok,
-    };
-    Some((COST.to_owned(), measure))
 }
 
 /// The problems of a scene without file locations, which differ between machines.

@@ -28,7 +28,7 @@ use lumiduct_core::transport::{Activity, Interrupt, Shard};
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::{Problems, name_hint};
 use lumiduct_input::{
-    COST, Move, Parameter, Plan, Project, Study, StudySettings, Tie, load_study, rewritten_scene,
+    Cost, Move, Parameter, Plan, Project, Study, StudySettings, Tie, load_study, rewritten_scene,
 };
 use lumiduct_report::study::{
     DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
@@ -254,9 +254,6 @@ fn best_scene(study: &Study, store: &Store, best: &DesignRecord) -> Result<Outpu
 /// Refuses measures that the scene does not have, before any work is done.
 fn expect_measures(study: &Study) -> Result<()> {
     let measures = study.measures.iter().enumerate();
-    // It was appended, and is no measure of the scene.
-    let has_cost = study.ranking.as_ref().is_some_and(|own| own.measure == COST);
-    let measures = measures.filter(|(_, name)| !(has_cost && *name == COST));
     let measures = measures.map(|(index, name)| (Key::of(&["measures"]).index(index), name));
     let check = |index| Key::of(&["check"]).index(index).field("measure");
     let checks = study.checks.iter().enumerate().map(|(index, own)| (check(index), &own.measure));
@@ -268,7 +265,8 @@ fn expect_measures(study: &Study) -> Result<()> {
         measures.chain(checks).chain(target),
         &mut problems,
     );
-    if let Some(ranking) = &study.ranking
+    if study.cost.is_none()
+        && let Some(ranking) = &study.ranking
         && problems.is_free_of_errors()
         && !study.measures.contains(&ranking.measure)
     {
@@ -283,6 +281,7 @@ fn expect_measures(study: &Study) -> Result<()> {
 fn facts(study: &Study, designs: usize) -> StudyFacts {
     let run = &study.base.run;
     let project = study.base.project.clone();
+    let cost = study.cost.is_some().then(|| Cost::NAME.to_owned());
     StudyFacts {
         lumiduct_batch: FACTS_FORMAT,
         version: VERSION.to_owned(),
@@ -308,7 +307,7 @@ fn facts(study: &Study, designs: usize) -> StudyFacts {
         estimator: run.estimator.name().to_owned(),
         asked: report::asked(&run.stop),
         parameters: study.parameters.iter().map(parameter_facts).collect(),
-        measures: study.measures.clone(),
+        measures: study.measures.iter().cloned().chain(cost).collect(),
         ranking: study.ranking.clone(),
         checks: study.checks.clone(),
         keep: study.keep,

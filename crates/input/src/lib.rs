@@ -80,7 +80,7 @@ pub use scatter::measured_sheet;
 pub use spec::optimise::Vary;
 pub use spec::study::{Best, Keep, Ranking, Samples, SearchPlan};
 pub use study::{
-    COST, DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation,
+    Cost, DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation,
     OptimisationKind, Parameter, PatternFeedback, Plan, Setting, Study, StudySettings, Tie, column,
     load_optimisation, load_study,
 };

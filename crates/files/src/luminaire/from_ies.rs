@@ -212,7 +212,7 @@ fn read_head(
             let unused = numbers.next("the number after the ballast factor")?;
             if unused != 1.0 {
                 remarks.push(format!(
-                    "the number after the ballast factor is {unused}; LM-63 keeps it for later use since 1995, so that it is no factor"
+                    "the number after the ballast factor is {unused}; LM-63 has reserved it since 1995, so it is not applied"
                 ));
             }
             (1.0, FileGeneration::Undefined)

@@ -223,26 +223,6 @@ fn what_contradicts_itself_or_is_lost_is_remarked_on() {
     assert_eq!(written_again.remarks, [""; 0]);
     let back = ies(&written_again.text).unwrap().luminaire;
     assert_eq!(back.text("OTHER").unwrap().replace('\n', ""), "0123456789".repeat(50));
-    wordy.texts = vec![("LAMP".to_owned(), "COB LED module of 3000 K".to_owned())];
-    assert_eq!(written(&wordy, LuminaireFormat::Ldt).remarks.len(), 1);
-    wordy.texts[0].1 += ", CRI 90";
-    let remarks = written(&wordy, LuminaireFormat::Ldt).remarks;
-    assert!(remarks[0].contains("of the 32 letters of LAMP"), "{remarks:?}");
-    let written = written(&ellipse, LuminaireFormat::Ldt);
-    assert!(written.remarks[0].contains("an ellipse"), "{:?}", written.remarks);
-    assert!(written.remarks[1].contains("beyond ASCII"), "{:?}", written.remarks);
-    let back = parse(written.text.as_bytes(), LuminaireFormat::Ldt).unwrap().luminaire.opening;
-    assert!((back.along_c0_mm - 4000f64.sqrt()).abs() < 1e-4, "{back:?}");
-    let types = written.text.replacen("\r\n1\r\n", "\r\n7\r\n", 1);
-    let read = parse(types.as_bytes(), LuminaireFormat::Ldt).unwrap();
-    assert!(read.remarks[0].contains("type of luminaire is 7"), "{:?}", read.remarks);
-    let steps = written.text.replacen("\r\n10\r\n10\r\n", "\r\n10\r\n5\r\n", 1);
-    let read = parse(steps.as_bytes(), LuminaireFormat::Ldt).unwrap();
-    assert!(
-        read.remarks.iter().any(|remark| remark.contains("not 5° apart")),
-        "{:?}",
-        read.remarks
-    );
 }
 
 #[test]
@@ -305,38 +285,6 @@ fn types_a_and_b_turn_their_axes_to_those_of_type_c() {
     let wide = of_type(2).replace("-90 0 90\n-90 0 90", "-90 0 90\n-180 0 180");
     let error = ies(&wide).unwrap_err().to_string();
     assert!(error.contains("line 6") && error.contains("from -180 to 180"), "{error}");
-}
-
-#[test]
-fn eulumdat_with_commas_and_several_sets_is_read() {
-    let own = written(&all_symmetries()[3], LuminaireFormat::Ldt).text;
-    let mut lines: Vec<String> = own.lines().map(str::to_owned).collect();
-    assert_eq!(lines[25], "1", "sets of lamps");
-    lines[25] = "2".to_owned();
-    let second = ["3", "old", "9000,5", "3000", "80", "70"].map(str::to_owned);
-    lines.splice(32..32, second);
-    let text = lines.join("\n").replace("166.6667", "166,6667");
-    let read = parse(text.as_bytes(), LuminaireFormat::Ldt).unwrap();
-    assert_eq!(read.luminaire.intensities.symmetry(), PlaneSymmetry::AboutC90);
-    assert_eq!(read.luminaire.lamps, all_symmetries()[3].lamps);
-    assert_eq!(read.remarks, ["of 2 sets of lamps the first is used"]);
-    for (temperature, rendering, expected) in [
-        ("3500 K", "80", [Some(3500.0), Some(80.0)]),
-        ("warm white", "1B", [None, None]),
-        ("840", ">80", [None, None]),
-    ] {
-        lines[29] = temperature.to_owned();
-        lines[30] = rendering.to_owned();
-        let read = parse(lines.join("\n").as_bytes(), LuminaireFormat::Ldt).unwrap().luminaire;
-        let stated = [read.colour.temperature_k(), read.colour.rendering_ra()];
-        assert_eq!(stated, expected, "{temperature}");
-        // The words are kept.
-        let again: Vec<String> =
-            written(&read, LuminaireFormat::Ldt).text.lines().map(str::to_owned).collect();
-        assert_eq!(again[29..31], [temperature, rendering]);
-        let ies = written(&read, LuminaireFormat::Ies).text;
-        assert!(ies.contains(&format!("[OTHER] colour rendering: {rendering}")), "{ies}");
-    }
 }
 
 #[test]

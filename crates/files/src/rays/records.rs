@@ -148,7 +148,7 @@ impl RayHeader {
         Ok((flux > 0.0).then_some(flux))
     }
 
-    /// A number of rays, of which there must be one.
+    /// A number of rays, which must not be zero.
     pub(crate) fn rays(&self, at: usize, count: u64) -> Result<u64, RayFileError> {
         if count == 0 { Err(self.wrong(at, "it has no rays")) } else { Ok(count) }
     }

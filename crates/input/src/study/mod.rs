@@ -2,23 +2,23 @@
 //!
 //! This module does not expand the plan into designs, and computes nothing.
 
+mod cost;
 mod file;
 mod list;
 mod optimisation;
 mod parameters;
 mod rules;
 
+pub use cost::Cost;
 pub use optimisation::feedback::{LawKind, LightTarget, PatternFeedback};
 pub use optimisation::{Optimisation, OptimisationKind, load_optimisation};
-pub use parameters::{COST, DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
+pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
 
 use crate::keys::{Key, Places};
 use crate::lower::plan;
 use crate::problems::Problems;
 use crate::spec::solid::{ShapedSolidSpec, SolidSpec};
-use crate::spec::study::{
-    Best, Keep, PlanSpec, Ranking, Samples, SearchPlan, StudyRunSpec, StudySpec,
-};
+use crate::spec::study::{Keep, PlanSpec, Ranking, Samples, SearchPlan, StudyRunSpec, StudySpec};
 use crate::study::file::{StudyDraft, read};
 use crate::texts::argument_label;
 use crate::{Draft, Job, Settings, draft, load};
@@ -92,6 +92,8 @@ pub struct Study {
     pub measures: Vec<String>,
     /// What the best design is.
     pub ranking: Option<Ranking>,
+    /// What designs cost, if that decides.
+    pub cost: Option<Cost>,
     /// What every design has to meet.
     pub checks: Vec<Check>,
     /// What is kept of each design.
@@ -141,8 +143,10 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let identity = serde_json::to_string(&(NUMERICS, &base.run, settings));
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
-    let has_cost = matches!(&plan, Plan::Search(own) if !own.cost.is_empty());
-    let cost = has_cost.then(|| Ranking { measure: COST.to_owned(), best: Best::Lowest });
+    let cost = match &plan {
+        Plan::Search(own) => Cost::new(&own.cost, &parameters),
+        _ => None,
+    };
     Ok(Study {
         name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
         title: spec.title,
@@ -152,12 +156,9 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
         common,
         parameters,
         plan,
-        measures: spec
-            .measures
-            .into_iter()
-            .chain(cost.is_some().then(|| COST.to_owned()))
-            .collect(),
-        ranking: cost.or(spec.ranking),
+        measures: spec.measures,
+        ranking: cost.as_ref().map(|_| Cost::ranking()).or(spec.ranking),
+        cost,
         checks: spec.check.clone(),
         keep: spec.keep,
         text: places.root_text().to_owned(),

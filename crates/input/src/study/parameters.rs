@@ -12,9 +12,6 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The measure of what a design of a search costs.
-pub const COST: &str = "cost";
-
 /// The setting of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]

@@ -9,7 +9,8 @@ use crate::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
     TiedKeySpec,
 };
-use crate::study::parameters::{COST, DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
+use crate::study::cost::Cost;
+use crate::study::parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
 use crate::texts::argument_label;
 use crate::{Job, Settings, draft};
 use indexmap::IndexMap;
@@ -77,7 +78,7 @@ fn check_search(spec: &StudySpec, problems: &mut Problems) {
         let message = format!("the factor {factor} leaves nothing to compare");
         problems.error(&key.field("cost").field(name), message).hint("leave it out");
     }
-    if !plan.cost.is_empty() && spec.measures.iter().any(|name| name == COST) {
+    if !plan.cost.is_empty() && spec.measures.iter().any(|name| name == Cost::NAME) {
         problems
             .error(&Key::of(&["measures"]), "`cost` is recorded by itself")
             .hint("leave it out");

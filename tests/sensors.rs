@@ -326,3 +326,12 @@ fn a_lamp_at_40_degrees_is_the_brightest_in_an_image() {
     assert!(found.total_error() < 2e4, "{found}");
     assert!((found.value - 1e5).abs() < 3.0 * found.total_error(), "{found}");
 }
+
+#[test]
+fn a_point_alone_is_seen_in_full_by_every_estimator_with_photons() {
+    let point = "[sources.lamp.point]\nflux_lm = 3\n[sensors.far]\ngoniometer = {}";
+    for estimator in [Request::Forward, Request::Mix] {
+        let found = measures_by(estimator, 20_000, point);
+        assert!((value(&found, "far.flux") - 3.0).abs() < 1e-9, "{}", found.values["far.flux"]);
+    }
+}

@@ -6,7 +6,7 @@
 mod package;
 mod skip;
 
-use lumiduct::study::{BatchOptions, OnExisting, run_study};
+use lumiduct::study::{BatchOptions, BatchProgress, OnExisting, run_study};
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::{Plan, Study, StudySettings, load_study};
 use lumiduct_report::study::{DesignRecord, Pairing, StudyReport};
@@ -204,6 +204,33 @@ fn a_search_finds_the_length_of_a_law_of_absorption_and_goes_on_where_it_was_sto
         let [before, after] = [&out, &again].map(|out| fs::read(out.join(name)).unwrap());
         assert_eq!(before, after, "{name}");
     }
+}
+
+#[test]
+fn a_search_that_is_stopped_keeps_the_best_scene_so_far() {
+    let (folder, path) = longest(LONGEST);
+    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
+    search(&path, &whole, OnExisting::Keep);
+    let options = BatchOptions {
+        settings: StudySettings::default(),
+        dir: Some(out.clone()),
+        existing: OnExisting::Keep,
+        jobs: 1,
+        shard: Shard::WHOLE,
+    };
+    let interrupt = Interrupt::default();
+    let stop = |progress: &BatchProgress| {
+        if progress.done == 9 {
+            interrupt.raise();
+        }
+    };
+    let stopped = run_study(&path, &options, &interrupt, &stop).unwrap();
+    assert!(stopped.report.is_none() && stopped.done[0] < stopped.done[1]);
+    let best = fs::read_to_string(out.join("dye_best.toml")).unwrap();
+    assert!(best.contains("length_mm = ") && !out.join("study.md").exists(), "{best}");
+    search(&path, &out, OnExisting::Resume);
+    let [all, resumed] = [&whole, &out].map(|dir| fs::read(dir.join("dye_best.toml")).unwrap());
+    assert_eq!(all, resumed);
 }
 
 #[test]

@@ -125,6 +125,10 @@ pub fn run_study(
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
     let warnings = study.warnings.clone();
     if records.len() < planned {
+        let is_begun_search = matches!(study.plan, Plan::Search(_)) && !records.is_empty();
+        if is_begun_search {
+            keep_best(&study, &store, analysed(facts.clone(), records.into_values().collect()))?;
+        }
         return Ok(FinishedStudy {
             facts,
             report: None,
@@ -249,6 +253,14 @@ fn best_scene(study: &Study, store: &Store, best: &DesignRecord) -> Result<Outpu
     let text = rewritten_scene(&study.base.text, &overrides, way, &comment)?;
     let name = format!("{}_best.toml", study.base.name);
     Ok(OutputFile { name, bytes: text.into_bytes() })
+}
+
+/// Keeps the scene of the best design of a search that was stopped, if one passes.
+fn keep_best(study: &Study, store: &Store, so_far: StudyReport) -> Result<()> {
+    let Some(best) = so_far.best_passing() else { return Ok(()) };
+    let scene = best_scene(study, store, best)?;
+    let folder = Folder::open(store.lock()?, Existing::Replace, None)?;
+    folder.write_beside(&scene.name, &scene.bytes)
 }
 
 /// Refuses measures that the scene does not have, before any work is done.

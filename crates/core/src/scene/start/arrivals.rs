@@ -395,6 +395,6 @@ fn around(scene: &Scene) -> Around {
     let meshes = scene.meshes.iter().map(|body| body.bounds());
     let sources = scene.sources.iter().map(|source| source.emitter.bounds());
     let bounds = solids.chain(meshes).chain(sources).fold(Aabb::EMPTY, Aabb::union);
-    // Slightly larger, for rounding.
-    Around { center: bounds.center(), radius: 0.5 * bounds.diagonal() * (1.0 + 1e-9) }
+    // Slightly larger, for rounding, and a nanometre around a point that is alone.
+    Around { center: bounds.center(), radius: (0.5 * bounds.diagonal() * (1.0 + 1e-9)).max(1e-6) }
 }

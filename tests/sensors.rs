@@ -328,7 +328,7 @@ fn a_lamp_at_40_degrees_is_the_brightest_in_an_image() {
 }
 
 #[test]
-fn a_point_alone_is_seen_in_full_by_every_estimator_with_photons() {
+fn a_lone_point_is_seen_in_full_by_forward_and_mix() {
     let point = "[sources.lamp.point]\nflux_lm = 3\n[sensors.far]\ngoniometer = {}";
     for estimator in [Request::Forward, Request::Mix] {
         let found = measures_by(estimator, 20_000, point);

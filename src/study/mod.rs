@@ -125,9 +125,12 @@ pub fn run_study(
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
     let warnings = study.warnings.clone();
     if records.len() < planned {
-        let is_begun_search = matches!(study.plan, Plan::Search(_)) && !records.is_empty();
-        if is_begun_search {
-            keep_best(&study, &store, analysed(facts.clone(), records.into_values().collect()))?;
+        if matches!(study.plan, Plan::Search(_)) && !records.is_empty() {
+            write_best_scene(
+                &study,
+                &store,
+                analysed(facts.clone(), records.into_values().collect()),
+            )?;
         }
         return Ok(FinishedStudy {
             facts,
@@ -255,8 +258,8 @@ fn best_scene(study: &Study, store: &Store, best: &DesignRecord) -> Result<Outpu
     Ok(OutputFile { name, bytes: text.into_bytes() })
 }
 
-/// Keeps the scene of the best design of a search that was stopped, if one passes.
-fn keep_best(study: &Study, store: &Store, so_far: StudyReport) -> Result<()> {
+/// Writes the scene of the best design of a search that was stopped, if one passes.
+fn write_best_scene(study: &Study, store: &Store, so_far: StudyReport) -> Result<()> {
     let Some(best) = so_far.best_passing() else { return Ok(()) };
     let scene = best_scene(study, store, best)?;
     let folder = Folder::open(store.lock()?, Existing::Replace, None)?;

@@ -7,9 +7,10 @@ mod package;
 mod skip;
 
 use lumiduct::study::{BatchOptions, BatchProgress, OnExisting, run_study};
+use lumiduct_core::measure::CheckOutcome;
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::{Plan, Study, StudySettings, load_study};
-use lumiduct_report::study::{DesignRecord, Pairing, StudyReport};
+use lumiduct_report::study::{DesignOutcome, DesignRecord, Pairing, StudyReport};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -187,6 +188,13 @@ fn a_search_finds_the_length_of_a_law_of_absorption_and_goes_on_where_it_was_sto
     let page = fs::read_to_string(out.join("study.md")).unwrap();
     let words = format!("the best that passes is design {}", best.design);
     assert!(page.contains(&words) && page.contains("history.png"), "{page}");
+    let again = &whole.confirmations;
+    assert_eq!(
+        again.iter().map(|own| own.estimator.as_str()).collect::<Vec<_>>(),
+        ["forward", "mix"]
+    );
+    assert!(again.iter().all(|own| own.seed == whole.facts.seed + 1) && whole.is_good());
+    assert!(page.contains("## Traced again") && page.contains("traced again, it passes"), "{page}");
     let records = |out: &Path| -> Vec<Vec<u8>> {
         let path = |design: &DesignRecord| out.join(format!("designs/{:04}.json", design.design));
         whole.designs.iter().map(|design| fs::read(path(design)).unwrap()).collect()
@@ -203,6 +211,22 @@ fn a_search_finds_the_length_of_a_law_of_absorption_and_goes_on_where_it_was_sto
     for name in ["study.json", "study.md", "study.csv", "dye_best.toml"] {
         let [before, after] = [&out, &again].map(|out| fs::read(out.join(name)).unwrap());
         assert_eq!(before, after, "{name}");
+    }
+}
+
+#[test]
+fn a_design_that_fails_when_traced_again_is_not_good() {
+    let (folder, path) = longest(&LONGEST.replace("designs = 40", "designs = 8"));
+    let mut found = search(&path, &folder.path().join("out"), OnExisting::Keep);
+    for (outcome, is_good, words) in [
+        (CheckOutcome::Undecided, true, "with seed 2 by `mix`: a check is undecided"),
+        (CheckOutcome::Failed, false, "traced again, it fails a check"),
+    ] {
+        let DesignOutcome::Done(result) = &mut found.confirmations[1].outcome else { panic!() };
+        result.checks[0].verdict.outcome = outcome;
+        assert_eq!(found.is_good(), is_good);
+        let text = lumiduct_report::study::terminal(&found);
+        assert!(text.contains(words), "{text}");
     }
 }
 

@@ -152,7 +152,7 @@ fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
 pub(crate) struct DesignTracing<'a> {
     batch: &'a DesignBatch<'a>,
     /// Settings common to all designs.
-    common: Settings,
+    pub(crate) common: Settings,
     pub(crate) board: Board<'a>,
 }
 
@@ -194,21 +194,10 @@ impl<'a> DesignTracing<'a> {
 
     /// Traces a design and writes its record, unless it is interrupted.
     fn trace(&self, design: &Design) -> Result<DesignEnd> {
-        let Self { batch, common, board } = self;
+        let Self { batch, common, .. } = self;
         let study = batch.study;
-        let own = study.parameters.iter().zip(&design.settings);
-        let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
-        let outcome = match pipeline::prepare(&study.scene, &common.with(own)) {
-            Ok(job) => match trace_job(batch, design, job, board) {
-                Ok(Some(result)) => DesignOutcome::Done(Box::new(result)),
-                Ok(None) => return Ok(DesignEnd::Stopped),
-                // Its time was up before anything was counted.
-                Err(Error::Usage(message)) => DesignOutcome::Failed(message),
-                Err(error) => return Err(error),
-            },
-            Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
-            Err(Error::Usage(message)) => DesignOutcome::Failed(message),
-            Err(error @ (Error::Io { .. } | Error::Output { .. })) => return Err(error),
+        let Some(outcome) = self.outcome(design, common, study.keep)? else {
+            return Ok(DesignEnd::Stopped);
         };
         let record = DesignRecord {
             lumiduct_design: DESIGN_FORMAT,
@@ -221,58 +210,77 @@ impl<'a> DesignTracing<'a> {
         batch.store.write(&record)?;
         Ok(DesignEnd::Recorded(Box::new(record)))
     }
-}
 
-/// The result of tracing; `None` if interrupted.
-fn trace_job(
-    batch: &DesignBatch<'_>,
-    design: &Design,
-    mut job: Job,
-    board: &Board<'_>,
-) -> Result<Option<DesignResult>> {
-    let study = batch.study;
-    job.checks.clone_from(&study.checks);
-    let traced = pipeline::trace(&job, batch.interrupt, &mut |progress| {
-        board.go_on(design.number, progress.fraction());
-    });
-    let traced = match traced {
-        Err(_) if batch.interrupt.is_raised() => return Ok(None),
-        traced => traced?,
-    };
-    if traced.stop == Stop::Interrupted {
-        return Ok(None);
+    /// What a design gives with these common settings; `None` if it is interrupted.
+    pub(crate) fn outcome(
+        &self,
+        design: &Design,
+        common: &Settings,
+        keep: Keep,
+    ) -> Result<Option<DesignOutcome>> {
+        let study = self.batch.study;
+        let own = study.parameters.iter().zip(&design.settings);
+        let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
+        Ok(Some(match pipeline::prepare(&study.scene, &common.with(own)) {
+            Ok(job) => match self.trace_job(design, job, keep) {
+                Ok(Some(result)) => DesignOutcome::Done(Box::new(result)),
+                Ok(None) => return Ok(None),
+                // Its time was up before anything was counted.
+                Err(Error::Usage(message)) => DesignOutcome::Failed(message),
+                Err(error) => return Err(error),
+            },
+            Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
+            Err(Error::Usage(message)) => DesignOutcome::Failed(message),
+            Err(error @ (Error::Io { .. } | Error::Output { .. })) => return Err(error),
+        }))
     }
-    let report = pipeline::compose(&job, &traced.findings, traced.stop)?;
-    match study.keep {
-        Keep::Records => {}
-        Keep::Reports => {
-            let path = batch.store.report_of(design.number);
-            let folder = Folder::open(FolderLock::take(&path)?, Existing::Replace, None)?;
-            folder.write(&report::files(&report, &job.text)?)?;
+
+    /// The result of tracing; `None` if interrupted.
+    fn trace_job(&self, design: &Design, mut job: Job, keep: Keep) -> Result<Option<DesignResult>> {
+        let Self { batch, board, .. } = self;
+        let study = batch.study;
+        job.checks.clone_from(&study.checks);
+        let traced = pipeline::trace(&job, batch.interrupt, &mut |progress| {
+            board.go_on(design.number, progress.fraction());
+        });
+        let traced = match traced {
+            Err(_) if batch.interrupt.is_raised() => return Ok(None),
+            traced => traced?,
+        };
+        if traced.stop == Stop::Interrupted {
+            return Ok(None);
         }
+        let report = pipeline::compose(&job, &traced.findings, traced.stop)?;
+        match keep {
+            Keep::Records => {}
+            Keep::Reports => {
+                let path = batch.store.report_of(design.number);
+                let folder = Folder::open(FolderLock::take(&path)?, Existing::Replace, None)?;
+                folder.write(&report::files(&report, &job.text)?)?;
+            }
+        }
+        let names = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
+        let cost = study.cost.as_ref().map(|own| own.measure(&study.parameters, &design.settings));
+        let measures =
+            cost.into_iter()
+                .chain(names.filter_map(|name| {
+                    Some((name.clone(), report.measures.values.get(name)?.clone()))
+                }))
+                .collect();
+        let replicates = study.measures.iter().filter_map(|name| {
+            Some((name.clone(), measure::replicates(&job.scene, &traced.findings, name)?))
+        });
+        Ok(Some(DesignResult {
+            scene_hash: job.hash,
+            measures,
+            replicates: replicates.collect(),
+            checks: report.checks,
+            target: report.run.target,
+            stopped: report.run.stopped,
+            paths: report.measures.paths,
+            warnings: report.warnings,
+        }))
     }
-    let names = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
-    let cost = study.cost.as_ref().map(|own| own.measure(&study.parameters, &design.settings));
-    let measures = cost
-        .into_iter()
-        .chain(
-            names
-                .filter_map(|name| Some((name.clone(), report.measures.values.get(name)?.clone()))),
-        )
-        .collect();
-    let replicates = study.measures.iter().filter_map(|name| {
-        Some((name.clone(), measure::replicates(&job.scene, &traced.findings, name)?))
-    });
-    Ok(Some(DesignResult {
-        scene_hash: job.hash,
-        measures,
-        replicates: replicates.collect(),
-        checks: report.checks,
-        target: report.run.target,
-        stopped: report.run.stopped,
-        paths: report.measures.paths,
-        warnings: report.warnings,
-    }))
 }
 
 /// The problems of a scene without file locations, which differ between machines.
@@ -335,7 +343,7 @@ impl<'a> Board<'a> {
         self.show();
     }
 
-    fn end(&self, design: usize) {
+    pub(crate) fn end(&self, design: usize) {
         if let Ok(mut state) = self.state.lock() {
             state.ended += 1;
             state.in_flight.retain(|(number, _)| *number != design);

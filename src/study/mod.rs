@@ -9,6 +9,7 @@
 //! computed in shards on several machines, ends with the same bytes.
 
 mod analysis;
+mod confirm;
 mod designs;
 mod execute;
 mod sampling;
@@ -19,6 +20,7 @@ pub use execute::{BatchProgress, BestDesign};
 pub use store::OnExisting;
 
 use crate::pipeline::{self, VERSION};
+use crate::study::confirm::confirmations;
 use crate::study::designs::designs;
 use crate::study::execute::{DesignBatch, execute};
 use crate::study::search::{ProposalEnd, search};
@@ -85,21 +87,13 @@ pub fn run_study(
 ) -> Result<FinishedStudy> {
     let study = load_study(path, &options.settings)?;
     expect_measures(&study)?;
-    if matches!(study.plan, Plan::Search(_)) && options.shard != Shard::WHOLE {
+    if study.plan.search().is_some() && options.shard != Shard::WHOLE {
         let why =
             "a search cannot be split: each design depends on earlier results; leave out --shard";
         return Err(Error::Usage(why.to_owned()));
     }
     let all = designs(&study);
-    let planned = match &study.plan {
-        Plan::Search(plan) => plan.designs as usize,
-        Plan::Grid
-        | Plan::OneAtATime
-        | Plan::List(_)
-        | Plan::LatinHypercube(_)
-        | Plan::Sobol(_)
-        | Plan::Tolerance(_) => all.len(),
-    };
+    let planned = study.plan.search().map_or(all.len(), |plan| plan.designs as usize);
     let facts = facts(&study, planned);
     let dir = options.dir.clone().unwrap_or_else(|| default_dir(&study.name));
     let store = Store::open(&dir, &facts, &study.text, options.existing)?;
@@ -108,8 +102,8 @@ pub fn run_study(
     let jobs = options.jobs;
     let batch = DesignBatch { study: &study, store: &store, jobs, interrupt, watch };
     // A search that runs out of designs ends with fewer.
-    let planned = match (&study.plan, &study.ranking) {
-        (Plan::Search(plan), Some(ranking)) => match search(&batch, plan, ranking)? {
+    let planned = match (study.plan.search(), &study.ranking) {
+        (Some(plan), Some(ranking)) => match search(&batch, plan, ranking)? {
             ProposalEnd::Complete(designs) => designs,
             ProposalEnd::Stopped => planned,
         },
@@ -125,7 +119,7 @@ pub fn run_study(
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
     let warnings = study.warnings.clone();
     if records.len() < planned {
-        if matches!(study.plan, Plan::Search(_)) && !records.is_empty() {
+        if study.plan.search().is_some() && !records.is_empty() {
             write_best_scene(
                 &study,
                 &store,
@@ -141,9 +135,23 @@ pub fn run_study(
             warnings,
         });
     }
+    let mut report = analysed(facts.clone(), records.into_values().collect());
+    if let Some(best) = report.best_passing() {
+        let Some(found) = confirmations(&batch, best, planned)? else {
+            // The best is not confirmed yet.
+            let done = [done[0], done[1] + 1];
+            return Ok(FinishedStudy {
+                facts,
+                report: None,
+                written: Written::New,
+                done,
+                dir,
+                warnings,
+            });
+        };
+        report.confirmations = found;
+    }
     interrupt.begin(Activity::Computing);
-    let records: Vec<DesignRecord> = records.into_values().collect();
-    let report = analysed(facts.clone(), records);
     let scene = report.best_passing().map(|best| best_scene(&study, &store, best)).transpose()?;
     let written = finish(&store, &report, (&study.text, scene), interrupt)?;
     Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings })
@@ -225,7 +233,7 @@ fn default_dir(name: &str) -> PathBuf {
 /// A study whose designs all have records, with what follows from them.
 fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyReport {
     let analysis = analysis::analysis(&facts, &designs);
-    StudyReport { facts, designs, analysis }
+    StudyReport { facts, designs, analysis, confirmations: Vec::new() }
 }
 
 /// Writes the results of a study, with its file and the scene that a search has found.

@@ -309,6 +309,15 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
     lines
 }
 
+/// A measure with its error, if it has one.
+pub(crate) fn measured(found: &Measure) -> String {
+    match found.unit.as_str() {
+        _ if found.std_error > 0.0 || found.bias.is_some() => quantity(found),
+        "1" => format_value(found.value),
+        unit => format!("{} {unit}", format_value(found.value)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -69,6 +69,21 @@ pub enum Plan {
     Search(SearchPlan),
 }
 
+impl Plan {
+    /// The search, if it is one.
+    pub fn search(&self) -> Option<&SearchPlan> {
+        match self {
+            Self::Search(plan) => Some(plan),
+            Self::Grid
+            | Self::OneAtATime
+            | Self::List(_)
+            | Self::LatinHypercube(_)
+            | Self::Sobol(_)
+            | Self::Tolerance(_) => None,
+        }
+    }
+}
+
 /// A study to run.
 #[derive(Debug)]
 pub struct Study {
@@ -143,10 +158,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let identity = serde_json::to_string(&(NUMERICS, &base.run, settings));
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
-    let cost = match &plan {
-        Plan::Search(own) => Cost::new(&own.cost, &parameters),
-        _ => None,
-    };
+    let cost = plan.search().and_then(|own| Cost::new(&own.cost, &parameters));
     Ok(Study {
         name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
         title: spec.title,

@@ -1,14 +1,15 @@
 //! The contents of the report of a study, part by part, for any page format.
 
 use crate::page::{Block, PagePart, table};
+use crate::study::confirmation::{standing, traced_again};
 use crate::study::edge::edge_remark;
 use crate::study::{
     DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, Sensitivity,
-    SensitivityMethod, StudyFacts, StudyReport, ValueWithError,
+    SensitivityMethod, StudyReport, ValueWithError,
 };
-use crate::words::{outcome_word, quantity};
+use crate::words::{measured, outcome_word};
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
-use lumiduct_core::measure::{CheckOutcome, Measure};
+use lumiduct_core::measure::CheckOutcome;
 use lumiduct_input::{Best, Domain, Setting};
 use std::fmt::Write;
 
@@ -21,6 +22,7 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
     let mut before: Vec<PagePart> = [
         failures(report),
         ranking(report),
+        traced_again(report),
         sensitivities(report),
         effects(report),
         Some(designs(report)),
@@ -62,7 +64,10 @@ pub(super) fn verdict(report: &StudyReport) -> String {
         _ = write!(text, "; {} did not reach their target error", bad.off_target);
     }
     match report.best_passing() {
-        Some(best) => _ = write!(text, "; the best that passes is design {}", best.design),
+        Some(best) => {
+            let again = standing(best, &report.confirmations);
+            _ = write!(text, "; the best that passes is design {}{again}", best.design);
+        }
         None if report.facts.plan.is_search() => {
             text += "; no design passes, so the search found none";
         }
@@ -115,29 +120,11 @@ fn ranking(report: &StudyReport) -> Option<PagePart> {
         Some(row.chain(settings(report, design)).chain([value, behind]).collect())
     });
     let mut blocks = vec![Block::Words { text: words }, table(&head, rows.collect())];
-    blocks.extend(report.best_passing().map(|_| Block::Words { text: by_chance(report) }));
+    let last = "Designs that fail a check come last, by their shortfall.";
+    blocks.extend(report.best_passing().map(|_| Block::Words { text: last.to_owned() }));
     let is_found = !report.facts.plan.is_search() || report.best_passing().is_some();
     blocks.extend(edge_remark(report).filter(|_| is_found).map(|text| Block::Words { text }));
     Some(part("Ranking", blocks))
-}
-
-/// What noise means for the result of a search.
-fn by_chance(report: &StudyReport) -> String {
-    let StudyFacts { scene, seed, .. } = &report.facts;
-    format!(
-        "Designs that fail a check come last, by their shortfall. The best of many noisy designs is partly luck: check its scene with other \
-            random numbers, `lumiduct run {scene}_best.toml --seed {}`.",
-        seed.wrapping_add(1)
-    )
-}
-
-/// A measure with its error, if it has one.
-fn measured(found: &Measure) -> String {
-    match found.unit.as_str() {
-        _ if found.std_error > 0.0 || found.bias.is_some() => quantity(found),
-        "1" => format_value(found.value),
-        unit => format!("{} {unit}", format_value(found.value)),
-    }
 }
 
 fn difference(behind: &ValueWithError) -> String {

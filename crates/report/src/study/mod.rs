@@ -1,6 +1,7 @@
 //! The output of a study: one record, and pure functions that turn it into files.
 
 mod analysis;
+mod confirmation;
 mod contents;
 mod edge;
 mod figures;
@@ -15,8 +16,8 @@ pub use analysis::{
     SensitivityMethod, Sharpness, ValueWithError,
 };
 pub use record::{
-    DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT, ParameterFacts,
-    PlanFacts, StudyFacts, StudyReport,
+    Confirmation, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT,
+    ParameterFacts, PlanFacts, StudyFacts, StudyReport,
 };
 
 pub use terminal::terminal;
@@ -66,6 +67,8 @@ struct StudySummaryRecord<'a> {
     facts: StudyFacts,
     rows: Vec<DesignSummaryRow<'a>>,
     analysis: &'a Analysis,
+    #[serde(skip_serializing_if = "<[Confirmation]>::is_empty")]
+    confirmations: &'a [Confirmation],
     files: Vec<&'a str>,
 }
 
@@ -104,6 +107,7 @@ fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<OutputFile> {
         facts: StudyFacts { logo: None, ..report.facts.clone() },
         rows: report.designs.iter().map(DesignSummaryRow::of).collect(),
         analysis: &report.analysis,
+        confirmations: &report.confirmations,
         files: files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect(),
     };
     OutputFile::json(SUMMARY, &summary)

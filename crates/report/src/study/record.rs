@@ -220,6 +220,37 @@ impl DesignRecord {
     }
 }
 
+/// The best design of a search, traced again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Confirmation {
+    /// Seed of the random numbers of light.
+    pub seed: u64,
+    /// The requested estimator of flux.
+    pub estimator: String,
+    /// What was found.
+    pub outcome: DesignOutcome,
+}
+
+impl Confirmation {
+    /// Whether a check fails.
+    pub(crate) fn refutes(&self) -> bool {
+        self.worst() == Some(CheckOutcome::Failed)
+    }
+
+    /// The worst outcome of its checks; `None` without checks, or if it was not traced.
+    pub(crate) fn worst(&self) -> Option<CheckOutcome> {
+        self.result()?.checks.iter().map(|check| check.verdict.outcome).max()
+    }
+
+    /// What was measured; `None` if it could not be traced.
+    pub(crate) fn result(&self) -> Option<&DesignResult> {
+        match &self.outcome {
+            DesignOutcome::Done(result) => Some(result),
+            DesignOutcome::Failed(_) => None,
+        }
+    }
+}
+
 /// Everything in the files of a study.
 #[derive(Debug, Clone)]
 pub struct StudyReport {
@@ -229,6 +260,8 @@ pub struct StudyReport {
     pub designs: Vec<DesignRecord>,
     /// Their joint analysis.
     pub analysis: Analysis,
+    /// The best design of a search, traced again.
+    pub confirmations: Vec<Confirmation>,
 }
 
 impl StudyReport {
@@ -251,10 +284,10 @@ impl StudyReport {
         best.passes().then_some(best)
     }
 
-    /// Whether every design is as requested or, of a search, one is found.
+    /// Whether every design is as requested or, of a search, one is found and not refuted.
     pub fn is_good(&self) -> bool {
         if self.facts.plan.is_search() {
-            self.best_passing().is_some()
+            self.best_passing().is_some() && !self.confirmations.iter().any(Confirmation::refutes)
         } else {
             self.counts().is_clean()
         }

@@ -1,5 +1,6 @@
 //! The lines that a batch prints at its end.
 
+use crate::study::confirmation::words;
 use crate::study::contents::verdict;
 use crate::study::figures::setting_words;
 use crate::study::{DesignOutcome, DesignRecord, StudyReport};
@@ -28,6 +29,9 @@ pub fn terminal(report: &StudyReport) -> String {
     if shown.len() > DESIGNS_SHOWN {
         let words = if ranked.is_empty() { "more" } else { "designs ranked lower" };
         text += &format!("  and {} {words}\n", shown.len() - DESIGNS_SHOWN);
+    }
+    for own in &report.confirmations {
+        text += &format!("  {}\n", words(own));
     }
     for own in &report.analysis.failures {
         let [low, high] = own.interval.map(format_percent);

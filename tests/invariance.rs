@@ -181,6 +181,44 @@ fn answers_do_not_depend_on_the_place_of_a_scene() {
     }
 }
 
+/// A cylinder of radius 2 mm in two media with the border at z = 4 mm, and light that leaves through every face.
+fn two_media(far: &str) -> String {
+    format!(
+        r#"
+[media]
+dense = {{ index = 1.6, absorption_per_mm = 0.01 }}
+thin = {{ index = 1.2 }}
+[solids.far.cylinder]
+radius_mm = 2
+medium = "thin"
+{far}
+[solids.near.cylinder]
+radius_mm = 2
+length_mm = 4
+medium = "dense"
+priority = 1
+[sources.lamp.point]
+flux_lm = 1
+at = {{ position_mm = [0.7, 0.2, 1.0] }}
+"#
+    )
+}
+
+#[test]
+fn light_that_escapes_where_walls_coincide_left_the_solid_of_higher_priority() {
+    let scenes = Scenes::new();
+    let apart = two_media("length_mm = 6\nat = { position_mm = [0, 0, 4] }");
+    let apart = measures(&scenes.load(&apart));
+    // The wall of the far solid, and its entry, coincide with faces of the near one.
+    let inside = measures(&scenes.load(&two_media("length_mm = 10")));
+    for face in ["near.wall", "near.entry", "far.wall", "far.exit"] {
+        let name = format!("balance.escaped.{face}");
+        let [expected, found] = [&apart, &inside].map(|own| own.values[&name].value);
+        assert!(expected > 0.005, "{name}: {expected}");
+        assert!((found - expected).abs() < ASTRAY, "{name}: {found}, not {expected}");
+    }
+}
+
 /// Largest change of x dy - y dx about the z axis over the vertices of some paths, mm, with the
 /// number of vertices of the shortest path. The scene's solids and sheets are at the origin.
 fn drift_of_skew(job: &Job) -> (f64, usize) {

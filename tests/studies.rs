@@ -258,6 +258,34 @@ fn a_search_that_is_stopped_keeps_the_best_scene_so_far() {
 }
 
 #[test]
+fn a_search_that_is_stopped_while_its_best_is_traced_again_is_resumed_there() {
+    let (folder, path) = longest(&LONGEST.replace("designs = 40", "designs = 8"));
+    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
+    search(&path, &whole, OnExisting::Keep);
+    let options = BatchOptions {
+        settings: StudySettings::default(),
+        dir: Some(out.clone()),
+        existing: OnExisting::Keep,
+        jobs: 1,
+        shard: Shard::WHOLE,
+    };
+    let interrupt = Interrupt::default();
+    // The eighth design is the last of the search.
+    let stop = |progress: &BatchProgress| {
+        if progress.wanted > 8 {
+            interrupt.raise();
+        }
+    };
+    let stopped = run_study(&path, &options, &interrupt, &stop).unwrap();
+    assert!(stopped.report.is_none());
+    assert_eq!(stopped.done, [8, 9]);
+    assert!(out.join("dye_best.toml").exists() && !out.join("study.md").exists());
+    search(&path, &out, OnExisting::Resume);
+    let [all, resumed] = [&whole, &out].map(|dir| fs::read(dir.join("study.json")).unwrap());
+    assert_eq!(all, resumed);
+}
+
+#[test]
 fn a_search_without_a_design_that_passes_says_which_is_the_closest() {
     let none = LONGEST.replace("min = 0.5", "min = 0.99").replace("designs = 40", "designs = 12");
     let (folder, path) = longest(&none);

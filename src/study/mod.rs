@@ -117,44 +117,34 @@ pub fn run_study(
     let wanted = wanted.into_iter().filter(|design| *design <= planned);
     let wanted: Vec<usize> = wanted.collect();
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
-    let warnings = study.warnings.clone();
+    let unfinished = |done| FinishedStudy {
+        facts: facts.clone(),
+        report: None,
+        written: Written::New,
+        done,
+        dir: dir.clone(),
+        warnings: study.warnings.clone(),
+    };
     if records.len() < planned {
         if study.plan.search().is_some() && !records.is_empty() {
-            write_best_scene(
-                &study,
-                &store,
-                analysed(facts.clone(), records.into_values().collect()),
-            )?;
+            let so_far = analysed(facts.clone(), records.into_values().collect());
+            write_best_scene(&study, &store, &so_far)?;
         }
-        return Ok(FinishedStudy {
-            facts,
-            report: None,
-            written: Written::New,
-            done,
-            dir,
-            warnings,
-        });
+        return Ok(unfinished(done));
     }
     let mut report = analysed(facts.clone(), records.into_values().collect());
     if let Some(best) = report.best_passing() {
         let Some(found) = confirmations(&batch, best, planned)? else {
             // The best is not confirmed yet.
-            let done = [done[0], done[1] + 1];
-            return Ok(FinishedStudy {
-                facts,
-                report: None,
-                written: Written::New,
-                done,
-                dir,
-                warnings,
-            });
+            write_best_scene(&study, &store, &report)?;
+            return Ok(unfinished([done[0], done[1] + 1]));
         };
         report.confirmations = found;
     }
     interrupt.begin(Activity::Computing);
     let scene = report.best_passing().map(|best| best_scene(&study, &store, best)).transpose()?;
     let written = finish(&store, &report, (&study.text, scene), interrupt)?;
-    Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings })
+    Ok(FinishedStudy { report: Some(report), written, ..unfinished(done) })
 }
 
 /// Whether a folder contains results of a study.
@@ -267,7 +257,7 @@ fn best_scene(study: &Study, store: &Store, best: &DesignRecord) -> Result<Outpu
 }
 
 /// Writes the scene of the best design of a search that was stopped, if one passes.
-fn write_best_scene(study: &Study, store: &Store, so_far: StudyReport) -> Result<()> {
+fn write_best_scene(study: &Study, store: &Store, so_far: &StudyReport) -> Result<()> {
     let Some(best) = so_far.best_passing() else { return Ok(()) };
     let scene = best_scene(study, store, best)?;
     let folder = Folder::open(store.lock()?, Existing::Replace, None)?;

@@ -224,7 +224,7 @@ where
 /// The objective to minimise: below 1 for a design that passes every check, in the order of the ranking; above 1 for others, by their
 /// shortfall (Deb, Comput. Methods Appl. Mech. Eng. 186 (2000) 311); infinite where nothing could be measured.
 pub(crate) fn score(ranking: &Ranking, record: &DesignRecord) -> f64 {
-    let Some(result) = record.result() else { return f64::INFINITY };
+    let Some(result) = record.outcome.result() else { return f64::INFINITY };
     if !record.passes() {
         let of = |check: &Check| {
             result

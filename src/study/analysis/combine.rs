@@ -29,7 +29,7 @@ pub(super) fn combine(terms: &[Term<'_>], measure: &str) -> Option<ValueWithErro
 /// The error of a weighted sum from its values group by group; `None` where the designs do not have the same groups.
 fn paired_error(terms: &[Term<'_>], measure: &str) -> Option<f64> {
     let replicates: Option<Vec<&Replicates>> =
-        terms.iter().map(|term| term.design.result()?.replicates.get(measure)).collect();
+        terms.iter().map(|term| term.design.outcome.result()?.replicates.get(measure)).collect();
     let replicates = replicates?;
     let first = replicates.first()?;
     if !replicates.iter().all(|other| first.is_paired_with(other)) {

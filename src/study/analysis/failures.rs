@@ -24,11 +24,11 @@ pub(super) fn failures(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Fail
         return Vec::new();
     }
     // A design that makes no scene cannot be made, so it fails.
-    let all = designs.iter().map(|design| design.verdict().unwrap_or(CheckOutcome::Failed));
+    let all = designs.iter().map(|design| design.outcome.verdict().unwrap_or(CheckOutcome::Failed));
     let mut shares = vec![share("all checks together".into(), all)];
     for (place, check) in facts.checks.iter().enumerate() {
         let outcomes = designs.iter().map(|design| {
-            let own = design.result().and_then(|result| result.checks.get(place));
+            let own = design.outcome.result().and_then(|result| result.checks.get(place));
             own.map_or(CheckOutcome::Failed, |own| own.verdict.outcome)
         });
         shares.push(share(demand(check), outcomes));

@@ -80,7 +80,10 @@ fn jackknife(
     let all: Option<Vec<(f64, &Replicates)>> = designs
         .iter()
         .map(|design| {
-            Some((design.measure(measure)?.value, design.result()?.replicates.get(measure)?))
+            Some((
+                design.measure(measure)?.value,
+                design.outcome.result()?.replicates.get(measure)?,
+            ))
         })
         .collect();
     let all = all?;

@@ -44,6 +44,16 @@ pub enum CheckOutcome {
     Unknown,
 }
 
+impl CheckOutcome {
+    /// Whether a check counts as failed: its demand is not met, or nothing can ever meet it.
+    pub fn is_failure(self) -> bool {
+        match self {
+            Self::Failed | Self::Unknown => true,
+            Self::Passed | Self::Undecided => false,
+        }
+    }
+}
+
 /// Judges a check. All of its demands must be met; the worst of them decides.
 ///
 /// * `min` and `max`: undecided within 3 total errors (noise and bias) of the limit.

@@ -42,8 +42,10 @@ pub(super) fn check_embedded(
         is_a_guide(scene, &scene.solids[solid.index()])
             && starts.iter().all(|start| start.inside.contains(*solid))
     };
-    let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(holds_all) else { return };
-    let solid = &scene.solids[solid.index()];
+    let holding = (0..scene.solids.len()).map(SolidId::new).filter(holds_all);
+    let holding = holding.map(|solid| &scene.solids[solid.index()]);
+    // Of several, light starts in that of the highest priority.
+    let Some(solid) = holding.max_by_key(|solid| solid.priority) else { return };
     let medium = scene.media[solid.medium.index()].name();
     let message = format!(
         "lies inside the solid `{}`: its light starts in `{medium}` and crosses no face on its way in",

@@ -8,7 +8,7 @@ use lumiduct_core::measure::{CheckOutcome, Measure};
 /// The part of the page with every measure as the search found it and as it was found again.
 pub(super) fn traced_again(report: &StudyReport) -> Option<PagePart> {
     let best = report.best_passing().filter(|_| !report.confirmations.is_empty())?;
-    let result = best.result()?;
+    let result = best.outcome.result()?;
     let words = "The best of many noisy designs is partly luck. It was traced again with random numbers that the search has not used, and \
         by a second estimator.";
     let own = report.confirmations.iter();
@@ -19,8 +19,9 @@ pub(super) fn traced_again(report: &StudyReport) -> Option<PagePart> {
     let names = result.measures.iter().filter(|(_, found)| found.batches > 0).map(|own| own.0);
     let cell = |found: Option<&Measure>| found.map_or(String::new(), measured);
     let rows = names.map(|name| {
-        let again =
-            own.clone().map(|own| cell(own.result().and_then(|own| own.measures.get(name))));
+        let again = own
+            .clone()
+            .map(|own| cell(own.outcome.result().and_then(|own| own.measures.get(name))));
         [name.clone(), cell(best.measure(name))].into_iter().chain(again).collect()
     });
     let mut blocks = vec![Block::Words { text: words.into() }, table(&head, rows.collect())];
@@ -38,9 +39,10 @@ fn sentence(own: &Confirmation) -> String {
 /// What confirmations say of the best design, to follow its number in a sentence.
 pub(super) fn standing(best: &DesignRecord, own: &[Confirmation]) -> String {
     let is_refuted = own.iter().any(Confirmation::refutes);
-    let traced = own.iter().filter_map(Confirmation::worst);
+    let traced = own.iter().filter_map(|own| own.outcome.verdict());
     let is_open = traced.clone().any(|worst| worst != CheckOutcome::Passed);
-    let words = match (traced.count() == 0 || best.verdict().is_none(), is_refuted, is_open) {
+    let words = match (traced.count() == 0 || best.outcome.verdict().is_none(), is_refuted, is_open)
+    {
         (true, _, _) => return String::new(),
         (false, true, _) => "; traced again, it fails a check",
         (false, false, true) => "; traced again, a check is undecided",
@@ -51,7 +53,7 @@ pub(super) fn standing(best: &DesignRecord, own: &[Confirmation]) -> String {
 
 /// What a confirmation says, for a list.
 pub(super) fn words(own: &Confirmation) -> String {
-    let found = match (&own.outcome, own.worst()) {
+    let found = match (&own.outcome, own.outcome.verdict()) {
         (DesignOutcome::Failed(reason), _) => format!("not possible: {reason}"),
         (DesignOutcome::Done(_), None) => "without checks".to_owned(),
         (DesignOutcome::Done(_), Some(CheckOutcome::Passed)) => "all checks pass".to_owned(),

@@ -52,7 +52,7 @@ pub(super) fn verdict(report: &StudyReport) -> String {
     if report.facts.checks.is_empty() {
         text += ", without checks";
     } else {
-        let passed = |own: &&DesignRecord| own.verdict() == Some(CheckOutcome::Passed);
+        let passed = |own: &&DesignRecord| own.outcome.verdict() == Some(CheckOutcome::Passed);
         let passed = report.designs.iter().filter(passed).count();
         let (failed, undecided) = (bad.failed, bad.undecided);
         _ = write!(text, ": {passed} pass all checks, {failed} fail, {undecided} undecided");
@@ -222,7 +222,7 @@ fn designs(report: &StudyReport) -> PagePart {
                 [format!("no valid scene: {reason}")].into_iter().chain(rest).collect()
             }
         };
-        let verdict = design.verdict().map_or("", outcome_word).to_owned();
+        let verdict = design.outcome.verdict().map_or("", outcome_word).to_owned();
         let row = [design.design.to_string()].into_iter().chain(settings(report, design));
         row.chain(values).chain([verdict]).collect()
     };
@@ -280,7 +280,7 @@ fn domain_words(domain: &Domain) -> String {
 fn remarks(report: &StudyReport) -> Option<PagePart> {
     let mut told: Vec<(&str, Vec<usize>)> = Vec::new();
     for design in &report.designs {
-        for warning in design.result().into_iter().flat_map(|result| &result.warnings) {
+        for warning in design.outcome.result().into_iter().flat_map(|result| &result.warnings) {
             match told.iter_mut().find(|(text, _)| text == warning) {
                 Some((_, designs)) => designs.push(design.design),
                 None => told.push((warning, vec![design.design])),

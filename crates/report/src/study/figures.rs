@@ -340,7 +340,7 @@ fn scatter(report: &StudyReport) -> ScatterMatrix {
     let (kinds, kind_of) = if report.facts.checks.is_empty() {
         (vec!["designs".to_owned()], vec![0; designs.len()])
     } else {
-        let kind = |design: &DesignRecord| match design.verdict() {
+        let kind = |design: &DesignRecord| match design.outcome.verdict() {
             Some(CheckOutcome::Passed) => 0,
             Some(CheckOutcome::Failed | CheckOutcome::Unknown) | None => 1,
             Some(CheckOutcome::Undecided) => 2,

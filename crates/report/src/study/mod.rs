@@ -94,8 +94,8 @@ impl<'a> DesignSummaryRow<'a> {
                 DesignOutcome::Failed(reason) => Some(reason),
                 DesignOutcome::Done(_) => None,
             },
-            measures: design.result().map(|result| &result.measures),
-            verdict: design.verdict(),
+            measures: design.outcome.result().map(|result| &result.measures),
+            verdict: design.outcome.verdict(),
         }
     }
 }

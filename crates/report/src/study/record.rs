@@ -195,28 +195,32 @@ pub struct DesignResult {
     pub warnings: Vec<String>,
 }
 
-impl DesignRecord {
+impl DesignOutcome {
     /// The result of tracing; `None` for a design that makes no scene.
     pub fn result(&self) -> Option<&DesignResult> {
-        match &self.outcome {
-            DesignOutcome::Done(result) => Some(result),
-            DesignOutcome::Failed(_) => None,
+        match self {
+            Self::Done(result) => Some(result),
+            Self::Failed(_) => None,
         }
-    }
-
-    /// A recorded measure, if the design was traced.
-    pub fn measure(&self, name: &str) -> Option<&Measure> {
-        self.result()?.measures.get(name)
-    }
-
-    /// Whether it was traced and passes every check.
-    pub fn passes(&self) -> bool {
-        self.result().is_some() && self.verdict().is_none_or(|own| own == CheckOutcome::Passed)
     }
 
     /// The worst outcome of its checks: failed before undecided before passed; `None` without checks or a result.
     pub fn verdict(&self) -> Option<CheckOutcome> {
         self.result()?.checks.iter().map(|check| check.verdict.outcome).max()
+    }
+}
+
+impl DesignRecord {
+    /// A recorded measure, if the design was traced.
+    pub fn measure(&self, name: &str) -> Option<&Measure> {
+        self.outcome.result()?.measures.get(name)
+    }
+
+    /// Whether it was traced and passes every check.
+    pub fn passes(&self) -> bool {
+        let outcome = &self.outcome;
+        outcome.result().is_some()
+            && outcome.verdict().is_none_or(|own| own == CheckOutcome::Passed)
     }
 }
 
@@ -234,20 +238,7 @@ pub struct Confirmation {
 impl Confirmation {
     /// Whether a check fails.
     pub(crate) fn refutes(&self) -> bool {
-        self.worst() == Some(CheckOutcome::Failed)
-    }
-
-    /// The worst outcome of its checks; `None` without checks, or if it was not traced.
-    pub(crate) fn worst(&self) -> Option<CheckOutcome> {
-        self.result()?.checks.iter().map(|check| check.verdict.outcome).max()
-    }
-
-    /// What was measured; `None` if it could not be traced.
-    pub(crate) fn result(&self) -> Option<&DesignResult> {
-        match &self.outcome {
-            DesignOutcome::Done(result) => Some(result),
-            DesignOutcome::Failed(_) => None,
-        }
+        self.outcome.verdict().is_some_and(CheckOutcome::is_failure)
     }
 }
 
@@ -301,21 +292,20 @@ impl StudyReport {
 
     /// Designs that make no scene, fail a check, and are undecided.
     pub fn counts(&self) -> StudyCounts {
-        let verdicts = || self.designs.iter().map(|design| (design.result(), design.verdict()));
-        let count = |wanted: CheckOutcome| {
-            verdicts().filter(|(_, verdict)| *verdict == Some(wanted)).count()
+        let count = |is_counted: fn(&DesignOutcome) -> bool| {
+            self.designs.iter().filter(|design| is_counted(&design.outcome)).count()
         };
         StudyCounts {
-            broken: verdicts().filter(|(result, _)| result.is_none()).count(),
-            failed: count(CheckOutcome::Failed) + count(CheckOutcome::Unknown),
-            undecided: count(CheckOutcome::Undecided),
+            broken: count(|own| own.result().is_none()),
+            failed: count(|own| own.verdict().is_some_and(CheckOutcome::is_failure)),
+            undecided: count(|own| own.verdict() == Some(CheckOutcome::Undecided)),
             off_target: self.designs.iter().filter(|design| is_off_target(design)).count(),
         }
     }
 }
 
 fn is_off_target(design: &DesignRecord) -> bool {
-    let target = design.result().and_then(|result| result.target.as_ref());
+    let target = design.outcome.result().and_then(|result| result.target.as_ref());
     target.is_some_and(|target| !target.is_reached())
 }
 

@@ -44,7 +44,7 @@ fn row(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
         cells.push(number(found.map(|found| found.std_error)));
         cells.push(number(found.and_then(|found| found.bias)));
     }
-    let result = design.result();
+    let result = design.outcome.result();
     for place in 0..facts.checks.len() {
         let verdict = result.and_then(|result| result.checks.get(place));
         cells.push(verdict.map_or("", |own| outcome_word(own.verdict.outcome)).to_owned());

@@ -11,6 +11,7 @@ use crate::scene::{
     FaceId, FinishId, Hits, Inside, MediumId, Owner, Patch, PrimHit, Scene, Surface,
 };
 use glam::{DVec2, DVec3};
+use std::cmp::Reverse;
 
 /// Step along a direction for its slope on a chart, as a share of the scene's size, 1.
 const SLOPE_STEP: f64 = 1e-7;
@@ -187,6 +188,19 @@ impl Scene {
             moved.x -= period * (moved.x / period).round();
         }
         moved / (step * through.abs())
+    }
+
+    /// The face through which light that crosses an interface leaves a solid; of several, the acting one, then that of
+    /// the highest priority, then the first of the scene.
+    pub(crate) fn face_left(&self, interface: &Interface<'_>, hits: &Hits) -> Option<FaceId> {
+        let left = hits.all().filter_map(|hit| match (hit.owner, hit.toward) {
+            (Owner::Solid(solid), Toward::Front) => {
+                let acts = hit.face == interface.acting.face;
+                Some((acts, self.solids[solid.index()].priority, Reverse(hit.face.index())))
+            }
+            (Owner::Solid(_), Toward::Back) | (Owner::Sheet | Owner::Port, _) => None,
+        });
+        left.max().map(|(_, _, Reverse(face))| FaceId::new(face))
     }
 
     /// The precedence of a face; `None` when it is buried in a solid of higher priority.

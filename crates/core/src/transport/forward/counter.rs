@@ -4,10 +4,7 @@ mod surfaces;
 
 use crate::optics::Side;
 use crate::rng::{Points, Sampler, stream};
-use crate::scene::shape::Toward;
-use crate::scene::{
-    CountedLight, FaceId, LightGroupId, MediumId, Owner, RowReach, SensorId, SourceId,
-};
+use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, RowReach, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::sensor_reading::{ClassStep, DetectedLight, Trail};
@@ -154,11 +151,8 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         self.on_faces(path, vertex, light);
         let transmitted = departure.side == Side::Transmitted;
         if transmitted {
-            for hit in vertex.hits.all() {
-                if let (Owner::Solid(_), Toward::Front) = (hit.owner, hit.toward) {
-                    self.last_left = Some(hit.face);
-                }
-            }
+            let left = self.run.scene.face_left(vertex.interface, vertex.hits);
+            self.last_left = left.or(self.last_left);
         }
         if self.classed {
             self.step(ClassStep { face: face.index() as u32, transmitted });

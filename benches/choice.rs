@@ -2,9 +2,9 @@
 //!
 //! `cargo bench --bench choice`, with scene names after `--` to restrict it to those. One thread. A cost is CPU seconds times
 //! relative variance, of the flux or over the cells, without bias: divided by the square of an error, the time to reach it.
-//! The table gives for each sensor what the pilot predicts over what a run of each estimator needs (*: with an objection), the
-//! CPU time of the pilot with all preparation, and the regret: the cost of the run of `auto`, pilot included, over that of the
-//! best run without an objection. Where a scene has several sensors, they share the runs; the pilot predicts for each alone.
+//! The table gives for each sensor what the pilot predicts over what a run of each estimator needs for it alone (*: with an
+//! objection), the CPU time of the pilot with all preparation, and the regret: the cost of the run of `auto` for all sensors, pilot
+//! included, over that of the best run of one estimator for all sensors, without an objection.
 //! A run of gathering has so few passes that its variance is known to 40 % only: where `auto` gathers, it and gathering have
 //! the mean over eight seeds.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
@@ -69,38 +69,47 @@ fn main() {
 /// Prints the rows of a scene.
 fn survey(name: &str) {
     let path = format!("scenes/{name}.toml");
-    let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
+    let job = load(&path);
     let first = Traced::new(&job, Request::Auto, 0);
     let choices = first.findings.choices.clone();
     let is_gathered = choices.iter().any(|choice| choice.chosen == Estimator::Gather);
     let prepared = first.prepared;
-    let all = |first: Traced, request: Request| -> Vec<Traced> {
+    let all = |job: &Job, first: Traced, request: Request| -> Vec<Traced> {
         let further = if is_gathered { FURTHER_SEEDS } else { 0 };
-        let further = (1..=further).map(|seed| Traced::new(&job, request, seed));
+        let further = (1..=further).map(|seed| Traced::new(job, request, seed));
         std::iter::once(first).chain(further).collect()
     };
-    let auto = all(first, Request::Auto);
-    let measured = REQUESTS.map(|request| {
-        let first = Traced::new(&job, request, 0);
-        if request == Request::Gather { all(first, request) } else { vec![first] }
-    });
-    let cost = |runs: &[Traced], sensor: usize| -> Option<f64> {
+    let auto = all(&job, first, Request::Auto);
+    let with_each = |job: &Job| {
+        REQUESTS.map(|request| {
+            let first = Traced::new(job, request, 0);
+            if request == Request::Gather { all(job, first, request) } else { vec![first] }
+        })
+    };
+    let measured = with_each(&job);
+    let cost = |job: &Job, runs: &[Traced], sensor: usize| -> Option<f64> {
         let of_run =
             |run: &Traced| Some(run.seconds * variance(&job.scene, &run.findings, sensor)?);
         let costs: Option<Vec<f64>> = runs.iter().map(of_run).collect();
         costs.map(|costs| costs.iter().sum::<f64>() / costs.len() as f64)
     };
     for (sensor, choice) in choices.iter().enumerate() {
-        let needed = measured.each_ref().map(|runs| cost(runs, sensor));
+        let in_common = measured.each_ref().map(|runs| cost(&job, runs, sensor));
+        let needed = if choices.len() == 1 {
+            in_common
+        } else {
+            let alone = load_alone(&path, sensor);
+            with_each(&alone).map(|runs| cost(&alone, &runs, 0))
+        };
         let mut best = f64::INFINITY;
         let mut columns = vec![format!("{name} {}", job.scene.sensors[sensor].name)];
-        for (estimator, needed) in Estimator::TRIED.iter().zip(&needed) {
+        for (place, estimator) in Estimator::TRIED.iter().enumerate() {
             let trial = choice.tried.iter().find(|trial| trial.estimator == *estimator);
             let predicted = trial.and_then(|trial| trial.cost);
             let is_fit = trial.is_some_and(|trial| trial.objection.is_none());
             let objection = if is_fit { "" } else { "*" };
-            best = best.min(needed.filter(|_| is_fit).unwrap_or(f64::INFINITY));
-            columns.push(match (predicted, needed) {
+            best = best.min(in_common[place].filter(|_| is_fit).unwrap_or(f64::INFINITY));
+            columns.push(match (predicted, needed[place]) {
                 (Some(predicted), Some(needed)) => {
                     format!("{:.2} of {needed:.1e}{objection}", predicted / needed)
                 }
@@ -109,13 +118,24 @@ fn survey(name: &str) {
                 (None, None) => format!("none{objection}"),
             });
         }
-        let chosen = cost(&auto, sensor).filter(|_| best.is_finite());
+        let chosen = cost(&job, &auto, sensor).filter(|_| best.is_finite());
         let regret = chosen.map(|chosen| chosen / best);
         columns.push(format!("{prepared:.2} s"));
         columns.push(choice.chosen.name().to_owned());
         columns.push(regret.map_or("-".to_owned(), |regret| format!("{regret:.2}")));
         println!("| {} |", columns.join(" | "));
     }
+}
+
+fn load(path: &str) -> Job {
+    input::load(Path::new(path), &Settings::default()).expect("the scenes are valid")
+}
+
+/// A scene with one of its sensors only.
+fn load_alone(path: &str, sensor: usize) -> Job {
+    let mut job = load(path);
+    job.scene.sensors = vec![job.scene.sensors.swap_remove(sensor)];
+    job
 }
 
 /// A run of [`LENGTH`].

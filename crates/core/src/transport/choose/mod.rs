@@ -3,6 +3,7 @@
 mod blind;
 mod choice;
 pub(crate) mod pilot;
+pub(crate) mod sharing;
 
 pub use blind::{BLIND_PATHS, blind_sensors};
 pub use choice::EstimatorChoice;

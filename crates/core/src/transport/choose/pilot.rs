@@ -13,6 +13,7 @@ use crate::scene::{Scene, SensorId};
 use crate::tally::Tally;
 use crate::transport::batches::BatchSizes;
 use crate::transport::choose::choice::EstimatorChoice;
+use crate::transport::choose::sharing::{Wanted, in_common};
 use crate::transport::estimators;
 use crate::transport::gather::settings::passes_in_turn;
 use crate::transport::stop::StopSignal;
@@ -117,68 +118,6 @@ fn choices(
     Some(in_common(sensors.iter().map(of_sensor).collect()))
 }
 
-/// The best for a sensor alone.
-struct Wanted {
-    choice: EstimatorChoice,
-    /// The relative error to reach, if anything was found, 1.
-    error: Option<f64>,
-    /// Whether the plan demands it.
-    is_given: bool,
-}
-
-impl Wanted {
-    /// Time with another estimator over that with the chosen one, 1; infinite if it is not permitted.
-    fn longer(&self, estimator: Estimator) -> f64 {
-        let Self { choice, error, is_given } = self;
-        if choice.chosen == estimator {
-            return 1.0;
-        }
-        let mut fit = choice.tried.iter().filter(|own| own.objection.is_none());
-        match fit.find(|own| own.estimator == estimator) {
-            Some(own) if !is_given => {
-                let best = error.and_then(|error| Some((error, choice.time(error)?)));
-                // In the dark all are equal.
-                best.map_or(1.0, |(error, best)| match own.time(error) {
-                    None => f64::INFINITY,
-                    // Neither may need any.
-                    Some(time) if time == best => 1.0,
-                    Some(time) => time / best,
-                })
-            }
-            Some(_) | None => f64::INFINITY,
-        }
-    }
-
-    /// The best of some estimators, and its time over that of the chosen one, 1.
-    fn best_of(&self, some: &[Estimator]) -> (Estimator, f64) {
-        let times = some.iter().map(|one| (*one, self.longer(*one)));
-        times.min_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap_or((self.choice.chosen, 1.0))
-    }
-}
-
-/// The choices. With k estimators in a run each gets 1/k of the work. Of all sets of estimators, that one is taken whose largest slowdown of
-/// a sensor is least: k times the time by its best member over the time by the sensor's own choice.
-fn in_common(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
-    let mut all = Estimator::TRIED.to_vec();
-    for Wanted { choice, .. } in &wanted {
-        if !all.contains(&choice.chosen) {
-            all.push(choice.chosen);
-        }
-    }
-    let longest = |set: &[Estimator]| {
-        let longest = wanted.iter().map(|own| own.best_of(set).1).fold(1.0, f64::max);
-        set.len() as f64 * longest
-    };
-    let sets = (1..1usize << all.len()).map(|members| {
-        let is_member =
-            |(place, one): (usize, &Estimator)| (members >> place & 1 == 1).then_some(*one);
-        all.iter().enumerate().filter_map(is_member).collect::<Vec<_>>()
-    });
-    let set = sets.min_by(|a, b| longest(a).total_cmp(&longest(b))).unwrap_or_default();
-    let choice = |own: Wanted| EstimatorChoice { chosen: own.best_of(&set).0, ..own.choice };
-    wanted.into_iter().map(choice).collect()
-}
-
 /// The relative error that the best reaches within a budget, s; `None` where none found anything.
 fn least_error(tried: &[Trial], budget: f64) -> Option<f64> {
     let costs = tried.iter().filter_map(|trial| trial.cost);
@@ -272,79 +211,6 @@ mod tests {
         trials[0].cost = None;
         assert_eq!(best(&trials, Some(0.01)), Estimator::Forward, "in the dark");
         assert_eq!(best(&trials, None), Estimator::Forward, "in the dark");
-    }
-
-    /// What a sensor wants that costs this much forward and by the mix.
-    fn wanted(costs: [Option<f64>; 2], chosen: Estimator) -> Wanted {
-        let estimators = [Estimator::Forward, Estimator::Mix].into_iter();
-        let tried = estimators.zip(costs).map(|(estimator, cost)| trial(estimator, cost));
-        let error = costs.iter().any(Option::is_some).then_some(0.01);
-        let choice = EstimatorChoice { chosen, tried: tried.collect() };
-        Wanted { choice, error, is_given: false }
-    }
-
-    /// What is chosen for a sensor that slightly prefers the mix, and another one.
-    fn chosen_beside(other: Wanted) -> [Estimator; 2] {
-        let all = vec![wanted([Some(1e-4), Some(9e-5)], Estimator::Mix), other];
-        let chosen: Vec<Estimator> = in_common(all).iter().map(|own| own.chosen).collect();
-        chosen.try_into().unwrap()
-    }
-
-    #[test]
-    fn estimators_share_a_run_only_where_each_gains_more_than_it_loses() {
-        let [forward, mix] = [Estimator::Forward, Estimator::Mix];
-        let easy = || wanted([Some(1e-6), Some(5e-6)], forward);
-        assert_eq!(chosen_beside(easy()), [forward; 2], "mix gains a tenth there");
-        let without_noise = || wanted([Some(0.0), Some(0.0)], forward);
-        assert_eq!(chosen_beside(without_noise()), [mix; 2], "either will do for one of them");
-        assert_eq!(chosen_beside(wanted([Some(5e-6), Some(1e-6)], mix)), [mix; 2]);
-        let far = vec![wanted([Some(1e-4), Some(1e-5)], mix), easy()];
-        let chosen: Vec<Estimator> = in_common(far).iter().map(|own| own.chosen).collect();
-        assert_eq!(chosen, [mix, forward]);
-    }
-
-    #[test]
-    fn two_estimators_share_a_run_rather_than_three() {
-        let [forward, backward, mix] = [Estimator::Forward, Estimator::Backward, Estimator::Mix];
-        let sensor = |costs: [f64; 3], chosen| {
-            let all = [forward, backward, mix].into_iter().zip(costs);
-            let tried = all.map(|(estimator, cost)| trial(estimator, Some(cost)));
-            let choice = EstimatorChoice { chosen, tried: tried.collect() };
-            Wanted { choice, error: Some(0.01), is_given: false }
-        };
-        let map = sensor([5e-3, 5e-4, 7e-3], backward);
-        let wall = |by_mix| sensor([1e-6, 9e-5, by_mix], if by_mix < 1e-6 { mix } else { forward });
-        let far = sensor([1e-6, 1e-1, 5e-6], forward);
-        let chosen: Vec<Estimator> =
-            in_common(vec![map, wall(0.9e-6), far]).iter().map(|own| own.chosen).collect();
-        assert_eq!(chosen, [backward, forward, forward], "mix gains a tenth on the wall");
-        let [map, far] =
-            [sensor([5e-3, 5e-4, 7e-3], backward), sensor([1e-6, 1e-1, 5e-6], forward)];
-        let chosen: Vec<Estimator> =
-            in_common(vec![map, wall(0.1e-6), far]).iter().map(|own| own.chosen).collect();
-        assert_eq!(chosen, [backward, mix, forward], "each gains more than it loses");
-    }
-
-    #[test]
-    fn what_is_rejected_or_not_tried_is_not_taken_for_all() {
-        let [forward, mix] = [Estimator::Forward, Estimator::Mix];
-        let mut rejected = wanted([None, Some(1e-6)], forward);
-        rejected.choice.tried[1].objection = Some(Objection::Contradicted);
-        assert_eq!(chosen_beside(rejected), [forward; 2]);
-        let mut dark = wanted([None, None], forward);
-        dark.choice.tried.truncate(1);
-        assert_eq!(chosen_beside(dark), [forward; 2], "the mix is not possible there");
-        assert_eq!(chosen_beside(wanted([None, None], forward)), [mix; 2], "in the dark");
-    }
-
-    #[test]
-    fn an_estimator_that_the_plan_demands_stays() {
-        let [forward, mix] = [Estimator::Forward, Estimator::Mix];
-        let given =
-            |estimator| Wanted { is_given: true, ..wanted([Some(1e-6), Some(1.1e-6)], estimator) };
-        assert_eq!(chosen_beside(given(forward)), [forward; 2]);
-        assert_eq!(chosen_beside(given(mix)), [mix; 2]);
-        assert_eq!(chosen_beside(given(Estimator::Mis)), [mix, Estimator::Mis]);
     }
 
     #[test]

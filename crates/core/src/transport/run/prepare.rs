@@ -6,6 +6,7 @@ use crate::scene::{Scene, SensorId};
 use crate::transport::backward::paths::{Backward, Weights};
 use crate::transport::batches::{BatchSizes, usual_batch};
 use crate::transport::choose::pilot::choose;
+use crate::transport::choose::sharing::{EQUAL_SHARE, LEAST_SHARE};
 use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::gather::estimator::{Combination, Gather};
@@ -28,10 +29,6 @@ const PILOT_BOUNCES: u32 = 10_000;
 const TIMED: Duration = Duration::from_millis(10);
 /// Most batches of [`PILOT_PATHS`] that are traced for this measurement.
 const TIMED_BATCHES: u64 = 64;
-/// Share of the work for photons where all sensors are estimated backward: for the balance and for
-/// light outside the aim, 1. Otherwise photons and gather paths have half each.
-const PHOTON_SHARE: f64 = 0.1;
-
 /// The work of photons in a batch.
 #[derive(Debug, Clone, Copy)]
 enum PhotonWork {
@@ -68,9 +65,9 @@ impl<'s> Run<'s> {
             (_, true) => PhotonWork::Alone,
             // Photons also count for the sensors that are estimated forward, or mixed.
             (true, false) if of(Estimator::Forward).is_empty() && followed[1].is_empty() => {
-                PhotonWork::Shared(PHOTON_SHARE)
+                PhotonWork::Shared(LEAST_SHARE)
             }
-            (_, false) => PhotonWork::Shared(0.5),
+            (_, false) => PhotonWork::Shared(EQUAL_SHARE),
         };
         let sizes = BatchSizes::new(plan, pilot, signal.work_left(pilot.speed));
         let by_pass = gathered.iter().map(|(settings, _)| settings.photons).max();

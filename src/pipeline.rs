@@ -78,7 +78,7 @@ pub fn run_one(
     let traced = trace_from(&job, checkpoint, &mut save, interrupt, watch)?;
     interrupt.begin(Activity::Computing);
     let report = compose(&job, &traced.findings, traced.stop)?;
-    let files = report::files(&report, &job.text)?;
+    let files = report::files(&report, &job.text, output.pictures)?;
     interrupt.begin(Activity::Writing);
     let written = folder.write(&files)?;
     timing::write(&folder, &traced)?;

@@ -16,7 +16,7 @@ use clap::Args;
 use lumiduct_core::plan::{GatherPlan, Request, Schedule};
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::Settings;
-use lumiduct_report::{Existing, RunOutcome, Written, run_junit};
+use lumiduct_report::{Existing, Pictures, RunOutcome, Written, run_junit};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -57,6 +57,9 @@ pub(super) struct RunArgs {
     /// Replace an existing report.
     #[arg(long)]
     overwrite: bool,
+    /// Draw no PNG files: a report takes a fraction of the time. report.html has all plots in any case.
+    #[arg(long, conflicts_with = "shard")]
+    no_pictures: bool,
     /// Save a checkpoint in the folder of the report at this interval, such as 60s, for --resume.
     #[arg(long, value_parser = parse_time, value_name = "TIME", conflicts_with = "shard")]
     checkpoint: Option<Duration>,
@@ -148,7 +151,8 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     let start = if args.resume { RunStart::Resume } else { RunStart::Anew };
     let (dir, checkpoint_every) = (args.output.clone(), args.checkpoint);
     let luminaire = args.ies.clone();
-    let output = Output { dir, existing, checkpoint_every, start, luminaire };
+    let pictures = if args.no_pictures { Pictures::LeftOut } else { Pictures::Drawn };
+    let output = Output { dir, existing, pictures, checkpoint_every, start, luminaire };
     let mut display = Display::new(args.quiet);
     let outcome = pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| {
         display.show(progress);

@@ -1,6 +1,6 @@
 //! Where the report of a run goes, and what may happen to existing files.
 
-use lumiduct_report::Existing;
+use lumiduct_report::{Existing, Pictures};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -11,6 +11,8 @@ pub struct Output {
     pub dir: Option<PathBuf>,
     /// What to do with an existing report.
     pub existing: Existing,
+    /// Whether the report has pictures.
+    pub pictures: Pictures,
     /// How often a checkpoint is kept in the folder; `None` for never.
     pub checkpoint_every: Option<Duration>,
     /// Whether to resume from an existing checkpoint.
@@ -22,7 +24,14 @@ pub struct Output {
 impl Output {
     /// A report in a folder, without checkpoints.
     pub fn new(dir: Option<PathBuf>, existing: Existing) -> Self {
-        Self { dir, existing, checkpoint_every: None, start: RunStart::Anew, luminaire: None }
+        Self {
+            dir,
+            existing,
+            pictures: Pictures::Drawn,
+            checkpoint_every: None,
+            start: RunStart::Anew,
+            luminaire: None,
+        }
     }
 }
 

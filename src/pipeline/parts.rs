@@ -7,7 +7,9 @@ use crate::pipeline::{FinishedRun, compose, prepare, recipe};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use lumiduct_input::{Job, Settings};
-use lumiduct_report::{self as report, Existing, Folder, FolderLock, Recipe, expect_file};
+use lumiduct_report::{
+    self as report, Existing, Folder, FolderLock, Pictures, Recipe, expect_file,
+};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -148,7 +150,7 @@ pub fn merge_slices(
     let slices = parts.into_iter().map(|(_, part)| part.slice).collect();
     run.restore(run.state_of_slices(slices));
     let report = compose(&job, &run.findings(), Stop::Paths)?;
-    let written = folder.write(&report::files(&report, &job.text)?)?;
+    let written = folder.write(&report::files(&report, &job.text, Pictures::Drawn)?)?;
     let dir = folder.path().to_path_buf();
     let (stop, luminaire, warnings) = (Stop::Paths, None, job.warnings);
     Ok(FinishedRun { report, written, stop, dir, luminaire, warnings })

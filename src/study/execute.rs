@@ -14,7 +14,7 @@ use lumiduct_core::measure;
 use lumiduct_core::transport::{Interrupt, batch_paths};
 use lumiduct_input::{Job, Keep, Setting, Settings, Study};
 use lumiduct_report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
-use lumiduct_report::{self as report, Existing, Folder, FolderLock};
+use lumiduct_report::{self as report, Existing, Folder, FolderLock, Pictures};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -256,7 +256,7 @@ impl<'a> DesignTracing<'a> {
             Keep::Reports => {
                 let path = batch.store.report_of(design.number);
                 let folder = Folder::open(FolderLock::take(&path)?, Existing::Replace, None)?;
-                folder.write(&report::files(&report, &job.text)?)?;
+                folder.write(&report::files(&report, &job.text, Pictures::Drawn)?)?;
             }
         }
         let names = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));

@@ -55,6 +55,25 @@ bounce_limit = 20
 }
 
 #[test]
+fn a_run_without_pictures_writes_all_else_the_same() {
+    let place = Place::new();
+    place.good("run rod.toml -q -o drawn");
+    place.good("run rod.toml -q -o plain --no-pictures");
+    let [drawn, plain] = ["drawn", "plain"].map(|name| names(&place.path(name)));
+    let others: Vec<&String> = drawn.iter().filter(|name| !name.ends_with(".png")).collect();
+    assert!(others.len() < drawn.len() && others == plain.iter().collect::<Vec<_>>(), "{plain:?}");
+    let text =
+        |report: &str, name: &str| fs::read_to_string(place.path(report).join(name)).unwrap();
+    assert!(text("drawn", "report.md").contains("]("));
+    assert!(!text("plain", "report.md").contains("!["), "no links to missing files");
+    for name in ["measures.csv", "report.html"] {
+        assert_eq!(text("drawn", name), text("plain", name));
+    }
+    place.good("run rod.toml -q -o drawn --no-pictures --overwrite");
+    assert_eq!(names(&place.path("drawn")), plain);
+}
+
+#[test]
 fn a_run_writes_every_file_of_its_report() {
     let place = Place::new();
     let said = place.good("run rod.toml");

@@ -8,7 +8,7 @@ use crate::png::{
     AxisScale, ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
 };
 use crate::words::quantity;
-use crate::{OutputFile, Report};
+use crate::{OutputFile, Pictures, Report};
 use lumiduct_base::error::Result;
 use lumiduct_core::measure::Measure;
 
@@ -46,14 +46,20 @@ fn lines<'a>(report: &'a Report, sensor: &str) -> Vec<SunLine<'a>> {
 }
 
 /// Numbers and a plot for each sensor that has them.
-pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
+pub(crate) fn files(report: &Report, pictures: Pictures) -> Result<Vec<OutputFile>> {
     let mut files = Vec::new();
     for paths in &report.measures.sensor_paths {
         let lines = lines(report, &paths.sensor);
         if !lines.is_empty() {
             files.push(numbers(&paths.sensor, &lines)?);
-            let name = format!("{}.transmission.png", paths.sensor);
-            files.push(OutputFile { name, bytes: line_plot(&plot(&paths.sensor, &lines))? });
+            match pictures {
+                Pictures::Drawn => {
+                    let name = format!("{}.transmission.png", paths.sensor);
+                    files
+                        .push(OutputFile { name, bytes: line_plot(&plot(&paths.sensor, &lines))? });
+                }
+                Pictures::LeftOut => {}
+            }
         }
     }
     Ok(files)

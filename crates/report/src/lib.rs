@@ -89,7 +89,7 @@ pub use luminaire::{LuminaireOrigin, MeasuredLuminaire};
 pub(crate) use manifest::Manifest;
 pub use manifest::report_files;
 pub use mesh::mesh_report;
-pub use output::OutputFile;
+pub use output::{OutputFile, Pictures};
 pub use page::Standing;
 pub use rays::MeasuredRays;
 pub use recipe::Recipe;
@@ -110,18 +110,21 @@ use lumiduct_base::error::Result;
 /// # Errors
 ///
 /// `Error::Output` if a picture cannot be drawn, or a table, a page or the summary cannot be composed.
-pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
+pub fn files(report: &Report, scene_text: &str, pictures: Pictures) -> Result<Vec<OutputFile>> {
     let mut files = spreadsheet::files(report)?;
     files.extend(csv::files(report)?);
     files.extend(npz::files(report)?);
-    files.extend(by_sun::files(report)?);
-    files.extend(figures::files(report)?);
+    files.extend(by_sun::files(report, pictures)?);
+    match pictures {
+        Pictures::Drawn => files.extend(figures::files(report)?),
+        Pictures::LeftOut => {}
+    }
     files.extend(luminaire::files(&report.luminaires));
     files.extend(rays::files(&report.rays)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
     let logo = report.scene.project.as_ref().and_then(|project| project.logo.clone());
     files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
-    files.push(OutputFile::text("report.md", markdown::markdown(report)));
+    files.push(OutputFile::text("report.md", markdown::markdown(report, pictures)));
     files.push(OutputFile::text("report.html", run_page::html(report)?));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect();
     files.push(summary::file(report, &names)?);

@@ -2,14 +2,14 @@
 
 use crate::Report;
 use crate::contents::{parts, verdict};
-use crate::output::LOGO;
+use crate::output::{LOGO, Pictures};
 use crate::page::{Block, PagePart, Plots};
 use lumiduct_base::text::{markdown_cell, markdown_page};
 use lumiduct_input::Project;
 use std::fmt::Write;
 
 /// The whole page.
-pub(crate) fn markdown(report: &Report) -> String {
+pub(crate) fn markdown(report: &Report, pictures: Pictures) -> String {
     let mut page = format!("# {}\n\n", report.scene.title);
     page += &masthead(report.scene.project.as_ref());
     if let Some(description) = &report.scene.description {
@@ -23,7 +23,12 @@ pub(crate) fn markdown(report: &Report) -> String {
     // Plots need scripts; Markdown shows their pictures.
     for mut part in parts(report, &mut Plots::default()) {
         let is_empty = |block: &Block| matches!(block, Block::Table { rows, folded: None, .. } if rows.is_empty());
+        let is_plot = |block: &Block| matches!(block, Block::Plot { .. } | Block::PlotRow { .. });
         part.blocks.retain(|block| !is_empty(block));
+        match pictures {
+            Pictures::Drawn => {}
+            Pictures::LeftOut => part.blocks.retain(|block| !is_plot(block)),
+        }
         add(&mut page, &part, usize::MAX);
     }
     markdown_page(page.trim_end()) + "\n"

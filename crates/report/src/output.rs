@@ -30,6 +30,15 @@ impl OutputFile {
     }
 }
 
+/// Whether a report has pictures beside its page, which has plots of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pictures {
+    /// PNG files of all maps and plots.
+    Drawn,
+    /// None: the page for Markdown viewers has no plots.
+    LeftOut,
+}
+
 /// Name of the file with the logo of a project.
 pub(crate) const LOGO: &str = "project_logo.png";
 

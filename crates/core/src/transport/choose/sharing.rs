@@ -51,7 +51,7 @@ impl Wanted {
     }
 }
 
-/// The choices: the best of that set of estimators with which the largest slowdown of a sensor is least.
+/// The choices: the best of that set of estimators with which the largest slowdown of a sensor is least, and then their sum.
 pub(crate) fn in_common(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
     let mut all = Estimator::TRIED.to_vec();
     for Wanted { choice, .. } in &wanted {
@@ -63,14 +63,17 @@ pub(crate) fn in_common(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
         let taken: Vec<_> = wanted.iter().map(|own| own.best_of(set)).collect();
         let shares = WorkShares::of(taken.iter().map(|(own, _)| *own).collect());
         let longer = taken.into_iter().map(|(own, longer)| longer * shares.slowdown(own));
-        longer.fold(1.0, f64::max)
+        longer.fold((1.0, 0.0), |(most, sum), own| (own.max(most), sum + own))
     };
     let sets = (1..1usize << all.len()).map(|members| {
         let is_member =
             |(place, one): (usize, &Estimator)| (members >> place & 1 == 1).then_some(*one);
         all.iter().enumerate().filter_map(is_member).collect::<Vec<_>>()
     });
-    let set = sets.min_by(|a, b| slowdown(a).total_cmp(&slowdown(b))).unwrap_or_default();
+    let known = sets.map(|set| (slowdown(&set), set));
+    let least = known
+        .min_by(|(a, _): &((f64, f64), _), (b, _)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let set = least.map(|(_, set)| set).unwrap_or_default();
     let choice = |own: Wanted| EstimatorChoice { chosen: own.best_of(&set).0, ..own.choice };
     wanted.into_iter().map(choice).collect()
 }
@@ -147,9 +150,10 @@ mod tests {
         let wall = |by_mix| wanted([Some(5e-7), Some(1e-5), Some(by_mix)]);
         assert_eq!(chosen(vec![map(), wall(4e-7)]), [BACKWARD, FORWARD]);
         assert_eq!(chosen(vec![map(), wall(4e-8)]), [BACKWARD, MIX], "ten times is not little");
-        let desk = wanted([Some(2.5e-4), Some(2e-4), Some(8e-5)]);
-        let lit = wanted([Some(2e-11), None, Some(1e-10)]);
-        assert_eq!(chosen(vec![desk, lit]), [MIX, FORWARD], "its photons are for both");
+        let desk = |backward| wanted([Some(2.5e-4), Some(backward), Some(8e-5)]);
+        let lit = || wanted([Some(2e-11), None, Some(1e-10)]);
+        assert_eq!(chosen(vec![desk(2e-4), lit()]), [MIX, FORWARD], "its photons are for both");
+        assert_eq!(chosen(vec![desk(7e-5), lit()]), [MIX, FORWARD], "which photons slow anyway");
     }
 
     #[test]

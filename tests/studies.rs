@@ -6,7 +6,7 @@
 mod package;
 mod skip;
 
-use lumiduct::study::{BatchOptions, BatchProgress, OnExisting, run_study};
+use lumiduct::study::{BatchOptions, BatchProgress, FinishedStudy, OnExisting, run_study};
 use lumiduct_core::measure::CheckOutcome;
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::{Plan, Study, StudySettings, load_study};
@@ -230,25 +230,34 @@ fn a_design_that_fails_when_traced_again_is_not_good() {
     }
 }
 
-#[test]
-fn a_search_that_is_stopped_keeps_the_best_scene_so_far() {
-    let (folder, path) = longest(LONGEST);
-    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
-    search(&path, &whole, OnExisting::Keep);
+/// A search that the user stops as soon as its progress is this.
+fn stopped_when(
+    path: &Path,
+    out: &Path,
+    is_reached: impl Fn(&BatchProgress) -> bool + Sync,
+) -> FinishedStudy {
     let options = BatchOptions {
         settings: StudySettings::default(),
-        dir: Some(out.clone()),
+        dir: Some(out.to_path_buf()),
         existing: OnExisting::Keep,
         jobs: 1,
         shard: Shard::WHOLE,
     };
     let interrupt = Interrupt::default();
     let stop = |progress: &BatchProgress| {
-        if progress.done == 9 {
+        if is_reached(progress) {
             interrupt.raise();
         }
     };
-    let stopped = run_study(&path, &options, &interrupt, &stop).unwrap();
+    run_study(path, &options, &interrupt, &stop).unwrap()
+}
+
+#[test]
+fn a_search_that_is_stopped_keeps_the_best_scene_so_far() {
+    let (folder, path) = longest(LONGEST);
+    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
+    search(&path, &whole, OnExisting::Keep);
+    let stopped = stopped_when(&path, &out, |progress| progress.done == 9);
     assert!(stopped.report.is_none() && stopped.done[0] < stopped.done[1]);
     let best = fs::read_to_string(out.join("dye_best.toml")).unwrap();
     assert!(best.contains("length_mm = ") && !out.join("study.md").exists(), "{best}");
@@ -262,21 +271,8 @@ fn a_search_that_is_stopped_while_its_best_is_traced_again_is_resumed_there() {
     let (folder, path) = longest(&LONGEST.replace("designs = 40", "designs = 8"));
     let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
     search(&path, &whole, OnExisting::Keep);
-    let options = BatchOptions {
-        settings: StudySettings::default(),
-        dir: Some(out.clone()),
-        existing: OnExisting::Keep,
-        jobs: 1,
-        shard: Shard::WHOLE,
-    };
-    let interrupt = Interrupt::default();
     // The eighth design is the last of the search.
-    let stop = |progress: &BatchProgress| {
-        if progress.wanted > 8 {
-            interrupt.raise();
-        }
-    };
-    let stopped = run_study(&path, &options, &interrupt, &stop).unwrap();
+    let stopped = stopped_when(&path, &out, |progress| progress.wanted > 8);
     assert!(stopped.report.is_none());
     assert_eq!(stopped.done, [8, 9]);
     assert!(out.join("dye_best.toml").exists() && !out.join("study.md").exists());

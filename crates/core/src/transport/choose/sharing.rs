@@ -1,7 +1,7 @@
 //! How sensors that want different estimators share the work of a run.
 //!
-//! The work is divided between photons, which are for all sensors, and gather paths, each of which is for one of them. The
-//! estimators are taken with which the sensor that loses most loses least, in comparison with its best estimator in a run of its own.
+//! Every sensor uses the photons of a run, but each gather path serves only one sensor. So a sensor takes longer than it would in a
+//! run of its own. The chosen set of estimators keeps the largest of these slowdowns as small as possible.
 
 use crate::plan::Estimator;
 use crate::transport::choose::choice::EstimatorChoice;

@@ -45,7 +45,7 @@ pub(crate) struct Canvas {
     width: usize,
     height: usize,
     fine: Vec<u8>,
-    /// Which stroke touched a fine pixel last, so that a stroke inks every pixel once.
+    /// Which transparent stroke touched a fine pixel last, so that it inks every pixel once.
     touched: Vec<u32>,
     stroke: u32,
     clip: Rect,
@@ -152,10 +152,11 @@ impl Canvas {
         let (left, top) = (area.left as usize, area.top as usize);
         for row in 0..area.height() as usize {
             let colours = (0..area.width() as usize).map(|column| colour_of(column, row));
-            let line: Vec<u8> = colours.flat_map(|colour| colour.repeat(FINER)).collect();
+            let line = colours.flat_map(|colour| [colour; FINER]).collect::<Vec<_>>();
+            let line = line.as_flattened();
             for fine_row in (top + row) * FINER..(top + row + 1) * FINER {
                 let start = (fine_row * self.width + left) * FINER * 3;
-                self.fine[start..start + line.len()].copy_from_slice(&line);
+                self.fine[start..start + line.len()].copy_from_slice(line);
             }
         }
     }
@@ -180,20 +181,20 @@ impl Canvas {
     }
 
     fn averaged(&self) -> Vec<u8> {
+        let count = (FINER * FINER) as u16;
+        let mut sums = vec![0; self.width * FINER * 3];
         let mut pixels = Vec::with_capacity(self.width * self.height * 3);
-        for row in 0..self.height {
-            for column in 0..self.width {
-                let mut sums = [0usize; 3];
-                for fine_row in row * FINER..(row + 1) * FINER {
-                    let start = (fine_row * self.width + column) * FINER * 3;
-                    for pixel in self.fine[start..start + FINER * 3].chunks_exact(3) {
-                        for (sum, part) in sums.iter_mut().zip(pixel) {
-                            *sum += usize::from(*part);
-                        }
-                    }
+        for rows in self.fine.chunks_exact(sums.len() * FINER) {
+            sums.fill(0);
+            for row in rows.chunks_exact(sums.len()) {
+                sums.iter_mut().zip(row).for_each(|(sum, part)| *sum += u16::from(*part));
+            }
+            for fine in sums.chunks_exact(FINER * 3) {
+                let mut total = [count / 2; 3];
+                for pixel in fine.chunks_exact(3) {
+                    total.iter_mut().zip(pixel).for_each(|(total, part)| *total += part);
                 }
-                let count = FINER * FINER;
-                pixels.extend(sums.map(|sum| ((sum + count / 2) / count) as u8));
+                pixels.extend_from_slice(&total.map(|total| (total / count) as u8));
             }
         }
         pixels
@@ -249,12 +250,15 @@ impl Canvas {
         }
     }
 
-    /// Inks a fine pixel unless this stroke has done so before.
+    /// Inks a fine pixel, a transparent stroke unless it has done so before.
     fn touch(&mut self, column: usize, row: usize, ink: Ink) {
         let index = row * self.width * FINER + column;
-        if self.touched[index] != self.stroke {
+        let pixel = &mut self.fine[3 * index..3 * index + 3];
+        if ink.opacity == 1.0 {
+            pixel.copy_from_slice(&ink.colour);
+        } else if self.touched[index] != self.stroke {
             self.touched[index] = self.stroke;
-            for (below, above) in self.fine[3 * index..3 * index + 3].iter_mut().zip(ink.colour) {
+            for (below, above) in pixel.iter_mut().zip(ink.colour) {
                 let mixed =
                     f64::from(*below) * (1.0 - ink.opacity) + f64::from(above) * ink.opacity;
                 *below = mixed.round() as u8;

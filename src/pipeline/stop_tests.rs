@@ -168,7 +168,7 @@ fn large_batches_of_a_run_of_limited_time_are_resumed_and_repeated() {
         let go_on = |run: &mut Run<'_>, pieces| {
             (0..pieces).for_each(|_| on_threads(2, || run.next_piece()));
         };
-        let mut run = start(60_000, &job.run);
+        let mut run = start(20_000, &job.run);
         let usual = batch_paths(&job.scene, &job.run);
         // Half of the work of the mix and a tenth of that of backward are photons.
         let least = if estimator == Request::Forward { usual } else { usual / 4 };
@@ -176,7 +176,7 @@ fn large_batches_of_a_run_of_limited_time_are_resumed_and_repeated() {
         go_on(&mut run, 3);
         let state = run.state();
         go_on(&mut run, 2);
-        let mut resumed = start(5_000, &state.plan(&job.run));
+        let mut resumed = start(10_000, &state.plan(&job.run));
         resumed.restore(state);
         go_on(&mut resumed, 2);
         let findings = run.findings();

@@ -98,9 +98,9 @@ pub struct Measures {
     pub source_flux: f64,
     /// Batches traced.
     pub batches: u64,
-    /// Paths traced.
+    /// Photon and gather paths traced.
     pub paths: u64,
-    /// Segments traced.
+    /// Their segments, as far as the paths count; a row of bounces taken in one step counts as one.
     pub segments: u64,
 }
 
@@ -145,7 +145,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         source_flux: scene.source_flux(),
         batches: photons.batch_count(),
         paths: findings.paths,
-        segments: photons.segments,
+        segments: findings.segments(),
     }
 }
 

@@ -12,10 +12,13 @@ use crate::transport::trial::PhotonPilot;
 const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
-/// Most segments and paths of a batch where the length of the run is known.
-const LARGE_BATCH_SEGMENTS: u64 = 1 << 20;
-const LARGE_BATCH_PATHS: u64 = 1 << 16;
-/// Smallest number of batches for each thread in a run of limited time.
+/// Most segments and paths of a batch in a run to a number of paths.
+const LARGE_BATCH: [u64; 2] = [1 << 20, 1 << 16];
+/// The same in a run of limited time: a third of a second of one thread.
+const LARGE_TIMED_BATCH: [u64; 2] = [1 << 23, 1 << 19];
+/// Least batches of a run of limited time: its errors are then known to 13 %.
+const LEAST_BATCHES: u64 = 32;
+/// Least of them for each thread.
 const BATCHES_PER_THREAD: u64 = 16;
 /// Share of the paths for which time is expected to suffice, 1: a run whose paths take longer still has enough batches.
 const CERTAIN_SHARE: f64 = 0.8;
@@ -46,10 +49,13 @@ impl<'a> BatchSizes<'a> {
         let StopRules { paths, batches, time, target, .. } = &plan.stop;
         let may_end_early = target.is_some() || (paths.is_some() && time.is_some());
         let is_known = plan.batch_paths.is_none() && (batches.is_some() || !may_end_early);
-        let large = LARGE_BATCH_SEGMENTS / pilot.segments_per_path as u64;
-        let most = if is_known { usual.max(large.min(LARGE_BATCH_PATHS)) } else { usual };
         let threads = rayon::current_num_threads() as f64;
         let left = left.filter(|_| is_known && paths.is_none());
+        // A number of batches repeats a run that time has ended.
+        let is_timed = left.is_some() || batches.is_some();
+        let [segments, large] = if is_timed { LARGE_TIMED_BATCH } else { LARGE_BATCH };
+        let large = large.min(segments / pilot.segments_per_path as u64);
+        let most = if is_known { usual.max(large) } else { usual };
         let by_time = left.map(|left| CERTAIN_SHARE * threads * left);
         Self { plan, usual, most, path: work::of_photon_path(pilot.segments_per_path), by_time }
     }
@@ -71,7 +77,7 @@ impl<'a> BatchSizes<'a> {
 
     /// Least batches of a run of limited time: it may end while every thread is in one, and few of them may be lost.
     fn least_batches(&self) -> u64 {
-        GROUPS.max(BATCHES_PER_THREAD * rayon::current_num_threads() as u64)
+        LEAST_BATCHES.max(BATCHES_PER_THREAD * rayon::current_num_threads() as u64)
     }
 
     /// Work of such a batch, ns.
@@ -116,21 +122,21 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_limited_time_has_about_as_many_batches_as_one_of_known_length() {
+    fn a_run_of_limited_time_has_as_few_batches_as_errors_need() {
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         one.install(|| {
             let time = Some(Duration::from_secs(1));
             let plan = plan(StopRules { time, ..StopRules::default() });
             let none = BatchSizes::new(&plan, pilot(), Some(0.0));
-            assert_eq!(none.photons(), usual_batch(pilot()) / GROUPS, "in the grace");
+            assert_eq!(none.photons(), usual_batch(pilot()) / LEAST_BATCHES, "in the grace");
             for seconds in [0.1, 1.0, 5.0] {
                 let sizes = BatchSizes::new(&plan, pilot(), Some(1e9 * seconds));
                 let batches = 1e9 * seconds / sizes.work();
-                assert!((160.0..=320.0).contains(&batches), "{batches} in {seconds} s");
+                assert!((40.0..=80.0).contains(&batches), "{batches} in {seconds} s");
                 assert!(sizes.photons().is_power_of_two());
             }
             let long = BatchSizes::new(&plan, pilot(), Some(1e12));
-            assert!(long.photons() <= LARGE_BATCH_PATHS, "{}", long.photons());
+            assert!(long.photons() <= LARGE_TIMED_BATCH[1], "{}", long.photons());
         });
     }
 
@@ -173,14 +179,17 @@ mod tests {
 
     #[test]
     fn a_stopped_run_is_repeated_with_batches_of_its_size() {
-        let most = BatchSizes::new(&plan(StopRules::default()), pilot(), None).most;
+        let asked = |paths, batches| {
+            plan(StopRules { paths: Some(paths), batches, ..StopRules::default() })
+        };
         for growth in [1, 2, 4, 8] {
-            let asked = |paths, batches| {
-                plan(StopRules { paths: Some(paths), batches, ..StopRules::default() })
-            };
             let whole = asked(growth * GROUPS * 3000, None);
-            assert!(growth <= most / usual_batch(pilot()));
             assert_eq!(BatchSizes::new(&whole, pilot(), None).growth(3000, 1.0), growth);
+        }
+        let timed = plan(StopRules { time: Some(Duration::MAX), ..StopRules::default() });
+        let most = BatchSizes::new(&timed, pilot(), Some(1e15)).growth(3000, 1e6);
+        assert!(most > 8, "{most}");
+        for growth in [1, 2, 4, 8, most] {
             let part = asked(growth * 40 * 3000, Some(40));
             assert_eq!(BatchSizes::new(&part, pilot(), None).growth(3000, 1.0), growth);
         }

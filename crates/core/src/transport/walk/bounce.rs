@@ -55,6 +55,7 @@ pub fn walk<V: Observer>(
             leave(&path, observer);
             return;
         };
+        let depth = path.depth;
         let next = match scattered {
             None => bounce(scene, &mut path, (&ray, hits), bounce_limit, sampler, observer),
             Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, observer),
@@ -67,7 +68,10 @@ pub fn walk<V: Observer>(
             _ = observer.see(&path, Event::Cut(path.throughput));
             return;
         }
-        if path.throughput < observer.roulette_below()
+        // A row ends with its leg, or where single bounces begin: roulette would save little there, and cost noise.
+        let took_row = path.depth > depth + 1;
+        if !took_row
+            && path.throughput < observer.roulette_below()
             && roulette(&mut path, sampler, observer).is_break()
         {
             return;

@@ -105,9 +105,12 @@ impl<'s> Run<'s> {
             _ => self.signal.clone(),
         };
         let blocks = self.blocks(self.batches..end);
-        let traced: Vec<Option<BlockCounts>> =
-            blocks.into_par_iter().map(|block| self.block(block, &signal)).collect();
-        traced.into_iter().map_while(|block| block).for_each(|block| self.add(block));
+        // Threads take blocks in their order: where a stop leaves one unfinished, few later ones are lost.
+        let traced = blocks.into_iter().enumerate().par_bridge();
+        let mut traced: Vec<(usize, Option<BlockCounts>)> =
+            traced.map(|(place, block)| (place, self.block(block, &signal))).collect();
+        traced.sort_unstable_by_key(|(place, _)| *place);
+        traced.into_iter().map_while(|(_, block)| block).for_each(|block| self.add(block));
     }
 
     /// The blocks of some batches. Apart from the last of a run, all are whole.

@@ -48,7 +48,9 @@ pub(crate) enum Section {
 }
 
 pub(crate) const B1_P10: Tube = Tube { radius: 5.0, length: 100.0, reflectance: 0.95 };
+pub(crate) const B1_P10_R99: Tube = Tube { reflectance: 0.99, ..B1_P10 };
 pub(crate) const B1_P100: Tube = Tube { radius: 5.0, length: 1000.0, reflectance: 0.95 };
+pub(crate) const B1_P100_R99: Tube = Tube { reflectance: 0.99, ..B1_P100 };
 pub(crate) const B2: Rod = Rod {
     section: Section::Round(1.5),
     length: 60.0,
@@ -57,6 +59,7 @@ pub(crate) const B2: Rod = Rod {
     source_at: [0.0, 0.0],
     gap: 0.2,
 };
+pub(crate) const B2_L600: Rod = Rod { length: 600.0, ..B2 };
 pub(crate) const B4: Rod = Rod {
     section: Section::Square(2.0),
     length: 40.0,

@@ -2,7 +2,7 @@
 //!
 //! They measure the cost of the general tracer. The physics is the same: Lambertian disk, mirror or
 //! Fresnel coin, roulette below the same throughput, flux by batch, a map of the exit and for the
-//! round rod the far field.
+//! round rod the far field. Each goes step by step, or takes all bounces between the ends at once.
 
 use crate::guides::{FAR_RINGS, MAP_CELLS, Rod, Section, Tube};
 use glam::DVec3;
@@ -17,17 +17,28 @@ pub(crate) struct Counted {
     pub(crate) segments: u64,
     /// Flux through the exit in each batch.
     pub(crate) batches: Vec<f64>,
-    pub(crate) map: Vec<f64>,
+    /// Flux of each cell of the exit, a mean over batches, and the mean of its square.
+    pub(crate) map: Vec<[f64; 2]>,
     pub(crate) far: Vec<f64>,
 }
 
 /// How much to trace.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Work {
+    pub(crate) stepping: Steps,
     pub(crate) batches: usize,
     pub(crate) batch_paths: u64,
     pub(crate) roulette_below: f64,
     pub(crate) seed: u64,
+}
+
+/// How a path gets through a guide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Steps {
+    /// From wall to wall.
+    Single,
+    /// From end to end. All light in a rod is totally reflected by its walls.
+    Rows,
 }
 
 struct Tracer {
@@ -35,24 +46,41 @@ struct Tracer {
     roulette_below: f64,
     half_map: f64,
     counted: Counted,
-    /// Flux of the batch.
+    /// Flux of the batch, and of its cells.
     flux: f64,
+    cells: Vec<f64>,
 }
 
 /// Traces a mirror tube.
 pub(crate) fn trace_tube(tube: &Tube, work: &Work) -> Counted {
-    trace(work, tube.radius, |tracer| tube_path(tube, tracer))
+    match work.stepping {
+        Steps::Single => trace(work, tube.radius, |tracer| tube_path(tube, tracer)),
+        Steps::Rows => trace(work, tube.radius, |tracer| tube_row(tube, tracer)),
+    }
 }
 
 /// Traces a rod.
 pub(crate) fn trace_rod(rod: &Rod, work: &Work) -> Counted {
-    match rod.section {
-        Section::Round(radius) => trace(work, radius, |tracer| round_path(rod, radius, tracer)),
-        Section::Square(half) => trace(work, half, |tracer| square_path(rod, half, tracer)),
+    match (rod.section, work.stepping) {
+        (Section::Round(radius), Steps::Single) => {
+            trace(work, radius, |tracer| round_path(rod, radius, tracer))
+        }
+        (Section::Square(half), Steps::Single) => {
+            trace(work, half, |tracer| square_path(rod, half, tracer))
+        }
+        (Section::Round(radius), Steps::Rows) => trace(work, radius, |tracer| {
+            let hits = |p: DVec3| p.x * p.x + p.y * p.y <= radius * radius;
+            rod_rows(rod, tracer, hits, |p, d, t| round_row(p, d, t, radius).0);
+        }),
+        (Section::Square(half), Steps::Rows) => trace(work, half, |tracer| {
+            let hits = |p: DVec3| p.x.abs() <= half && p.y.abs() <= half;
+            rod_rows(rod, tracer, hits, |p, d, t| square_row(p, d, t, half));
+        }),
     }
 }
 
 fn trace(work: &Work, half_map: f64, mut path: impl FnMut(&mut Tracer)) -> Counted {
+    let cells = MAP_CELLS * MAP_CELLS;
     let mut tracer = Tracer {
         random: Xoshiro256PlusPlus::seed_from_u64(work.seed),
         roulette_below: work.roulette_below,
@@ -60,17 +88,23 @@ fn trace(work: &Work, half_map: f64, mut path: impl FnMut(&mut Tracer)) -> Count
         counted: Counted {
             segments: 0,
             batches: Vec::new(),
-            map: vec![0.0; MAP_CELLS * MAP_CELLS],
+            map: vec![[0.0; 2]; cells],
             far: vec![0.0; FAR_RINGS],
         },
         flux: 0.0,
+        cells: vec![0.0; cells],
     };
+    let paths = work.batch_paths as f64;
     for _ in 0..work.batches {
-        tracer.flux = 0.0;
         for _ in 0..work.batch_paths {
             path(&mut tracer);
         }
-        tracer.counted.batches.push(tracer.flux / work.batch_paths as f64);
+        tracer.counted.batches.push(std::mem::take(&mut tracer.flux) / paths);
+        for (sums, cell) in tracer.counted.map.iter_mut().zip(&mut tracer.cells) {
+            let mean = std::mem::take(cell) / paths;
+            sums[0] += mean / work.batches as f64;
+            sums[1] += mean * mean / work.batches as f64;
+        }
     }
     tracer.counted
 }
@@ -156,6 +190,65 @@ fn square_path(rod: &Rod, half: f64, tracer: &mut Tracer) {
             }
         }
     }
+}
+
+fn tube_row(tube: &Tube, tracer: &mut Tracer) {
+    let (p, d) = tracer.lambertian_disk(DVec3::ZERO, tube.radius);
+    tracer.counted.segments += 1;
+    let ((p, _), bounces) = round_row(p, d, tube.length / d.z, tube.radius);
+    tracer.count_map(p, tube.reflectance.powf(bounces));
+}
+
+fn rod_rows(
+    rod: &Rod,
+    tracer: &mut Tracer,
+    hits: impl Fn(DVec3) -> bool,
+    row: impl Fn(DVec3, DVec3, f64) -> (DVec3, DVec3),
+) {
+    let Some((mut p, mut d)) = tracer.enter(rod, hits) else { return };
+    loop {
+        tracer.counted.segments += 1;
+        let end = if d.z > 0.0 { rod.length } else { 0.0 };
+        (p, d) = row(p, d, (end - p.z) / d.z);
+        match tracer.reflect_or_refract(d, DVec3::new(0.0, 0.0, -d.z.signum()), rod.index) {
+            Leg::Reflected(dir) => d = dir,
+            Leg::Refracted(dir) => return tracer.leave(p, dir, rod.length, true),
+        }
+    }
+}
+
+/// Where light is in a round guide after a way `t`, its direction there, and how often it has bounced: the chords of a path
+/// have one length and one turn.
+fn round_row(p: DVec3, d: DVec3, t: f64, radius: f64) -> ((DVec3, DVec3), f64) {
+    let first = distance_to_cylinder(p, d, radius);
+    if t <= first {
+        return ((p + t * d, d), 0.0);
+    }
+    let wall = p + first * d;
+    let normal = DVec3::new(-wall.x / radius, -wall.y / radius, 0.0);
+    let cos = -d.dot(normal);
+    let across2 = d.x * d.x + d.y * d.y;
+    let chord = 2.0 * radius * cos / across2;
+    let further = ((t - first) / chord).floor();
+    let turn = 2.0 * (cos / across2.sqrt()).min(1.0).asin();
+    let sense = (wall.x * d.y - wall.y * d.x).signum();
+    let (sin, cos_turn) = (sense * further * turn).sin_cos();
+    let turned = |v: DVec3| DVec3::new(cos_turn * v.x - sin * v.y, sin * v.x + cos_turn * v.y, v.z);
+    let after = mirrored(d, normal, cos);
+    let left = t - first - further * chord;
+    let along = DVec3::new(0.0, 0.0, (t - left - first) * d.z);
+    ((turned(wall + left * after) + along, turned(after)), 1.0 + further)
+}
+
+/// Where light is in a square guide after a way `t`, and its direction there: a straight line, folded.
+fn square_row(p: DVec3, d: DVec3, t: f64, half: f64) -> (DVec3, DVec3) {
+    let folded = |p: f64, d: f64| {
+        let turns = ((p + t * d + half) / (2.0 * half)).floor();
+        let offset = p + t * d - 2.0 * half * turns;
+        if turns.rem_euclid(2.0) == 0.0 { (offset, d) } else { (-offset, -d) }
+    };
+    let ((x, dx), (y, dy)) = (folded(p.x, d.x), folded(p.y, d.y));
+    (DVec3::new(x, y, p.z + t * d.z), DVec3::new(dx, dy, d.z))
 }
 
 /// How light continues from an interface.
@@ -253,7 +346,7 @@ impl Tracer {
             (place as usize).min(MAP_CELLS - 1)
         };
         let cell = cell(p.y) * MAP_CELLS + cell(p.x);
-        self.counted.map[cell] += weight;
+        self.cells[cell] += weight;
     }
 
     fn count_far(&mut self, d: DVec3) {

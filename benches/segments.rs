@@ -9,7 +9,9 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
+#[allow(dead_code, reason = "shared with other benches")]
 mod guides;
+#[allow(dead_code, reason = "rows are for the other bench")]
 mod plain;
 mod spread;
 
@@ -21,7 +23,7 @@ use lumiduct_core::scene::mesh::Mesh;
 use lumiduct_core::scene::{Scene, SensorId, SourceId};
 use lumiduct_core::tally::Tally;
 use lumiduct_core::transport::{Layout, ROULETTE_BELOW, Readings, Run};
-use plain::{Counted, Work, trace_rod, trace_tube};
+use plain::{Counted, Steps, Work, trace_rod, trace_tube};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use spread::Spread;
 use std::hint::black_box;
@@ -112,6 +114,7 @@ fn compare(case: &Case, pool: &ThreadPool) -> String {
         ours.add(pool.install(|| cpu_seconds(|| trace(case, seed))));
         if let Some(by_hand) = case.plain {
             let work = Work {
+                stepping: Steps::Single,
                 batches: BATCHES as usize,
                 batch_paths: case.batch_paths,
                 roulette_below: ROULETTE_BELOW,

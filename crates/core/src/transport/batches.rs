@@ -10,15 +10,15 @@ use crate::transport::trial::PhotonPilot;
 /// Target number of segments of a batch: long enough that summing costs little, short enough
 /// that little is lost when a run is stopped.
 const BATCH_SEGMENTS: u64 = 1 << 15;
-/// Most paths in a batch.
+/// Most paths in a batch where a run may end after any.
 const BATCH_PATHS: u64 = 4096;
 /// Most segments and paths of a batch in a run to a number of paths.
 const LARGE_BATCH: [u64; 2] = [1 << 20, 1 << 16];
-/// The same in a run of limited time: a third of a second of one thread.
-const LARGE_TIMED_BATCH: [u64; 2] = [1 << 23, 1 << 19];
+/// The same in a run of limited time: a quarter of a second of one thread in guides of exact shapes.
+const LARGE_TIMED_BATCH: [u64; 2] = [1 << 21, 1 << 17];
 /// Least batches of a run of limited time: its errors are then known to 13 %.
 const LEAST_BATCHES: u64 = 32;
-/// Least of them for each thread.
+/// Least batches for each thread.
 const BATCHES_PER_THREAD: u64 = 16;
 /// Share of the paths for which time is expected to suffice, 1: a run whose paths take longer still has enough batches.
 const CERTAIN_SHARE: f64 = 0.8;

@@ -7,12 +7,12 @@ use csv::ReaderBuilder;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_fixed;
 use ndarray::Array2;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Probability that noise alone exceeds the bound of a map.
 const FALSE_ALARM: f64 = 1e-3;
 /// A cell is judged if its value and error correspond to at least this many counts: with fewer the
-/// error itself is too uncertain for z-scores (with 32 batches a cell, 27 maps of 300 were beyond
-/// the bound by noise alone; with 128, none).
+/// distribution of its value is too far from normal.
 const COUNTS: f64 = 128.0;
 /// Share of the cells that may exceed the colour range of a picture, so that a few noisy ones do
 /// not drown the others.
@@ -32,9 +32,16 @@ pub struct MapTable {
     values: Vec<f64>,
     /// Standard error and bias together, in `unit`.
     errors: Vec<f64>,
+    /// Batches behind each error, if the report tells.
+    batches: Option<u64>,
 }
 
 impl MapTable {
+    /// The table with the number of batches that its errors come from.
+    pub(crate) fn with_batches(self, batches: Option<u64>) -> Self {
+        Self { batches, ..self }
+    }
+
     /// Reads a table; `None` if it is not that of a map.
     pub(crate) fn parse(name: &str, text: &str) -> std::result::Result<Option<Self>, String> {
         let mut reader = ReaderBuilder::new().from_reader(text.as_bytes());
@@ -55,6 +62,7 @@ impl MapTable {
             places: Vec::new(),
             values: Vec::new(),
             errors: Vec::new(),
+            batches: None,
         };
         for row in reader.records() {
             let row = row.map_err(|reason| reason.to_string())?;
@@ -125,7 +133,7 @@ pub enum MapOutcome {
         rms: f64,
         /// Largest |z|, 1.
         largest: f64,
-        /// What noise alone exceeds once in a thousand maps, 1: √(2 ln(n/0.001)) of n cells.
+        /// What noise alone exceeds in at most one map of a thousand, 1.
         bound: f64,
     },
 }
@@ -190,9 +198,19 @@ fn difference(a: &MapTable, b: &MapTable) -> MapOutcome {
     let count = scores.len() as f64;
     let rms = (scores.iter().map(|z| z * z).sum::<f64>() / count.max(1.0)).sqrt();
     let largest = scores.iter().fold(0.0f64, |most, z| most.max(z.abs()));
-    let bound = (2.0 * (count.max(1.0) / FALSE_ALARM).ln()).sqrt();
+    let bound = bound(count.max(1.0), a.batches.into_iter().chain(b.batches).min());
     let difference = MapTable { values, errors, ..a.clone() };
     MapOutcome::Compared { difference, judged: scores.len(), rms, largest, bound }
+}
+
+/// What the largest |z| of `count` cells exceeds by noise alone in at most one map of a thousand: √(2 ln(n/0.001)) for normally
+/// distributed noise, and by Student's distribution where few batches tell the errors, those of the map with fewer.
+fn bound(count: f64, batches: Option<u64>) -> f64 {
+    let normal = (2.0 * (count / FALSE_ALARM).ln()).sqrt();
+    let freedom = batches.map(|batches| batches.saturating_sub(1) as f64);
+    let student = freedom.and_then(|freedom| StudentsT::new(0.0, 1.0, freedom).ok());
+    let student = student.map(|law| -law.inverse_cdf(0.5 * FALSE_ALARM / count));
+    student.map_or(normal, |student| student.max(normal))
 }
 
 /// Pictures of all maps that were compared.

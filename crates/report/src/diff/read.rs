@@ -197,8 +197,14 @@ fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Com
             other => other.map_err(|source| Error::io(&path, source))?,
         };
         manifest.expect_file(&path, text.as_bytes())?;
-        let table = MapTable::parse(file.trim_end_matches(".csv"), &text);
-        maps.extend(table.map_err(|reason| Error::Usage(format!("{}: {reason}", path.display())))?);
+        let name = file.trim_end_matches(".csv");
+        let table = MapTable::parse(name, &text)
+            .map_err(|reason| Error::Usage(format!("{}: {reason}", path.display())))?;
+        // All values of a sensor come from the same batches.
+        let sensor = name.split_inclusive('.').next().unwrap_or(name);
+        let mut of_sensor = measures.iter().filter(|(measure, _)| measure.starts_with(sensor));
+        let batches = of_sensor.next().map(|(_, measure)| measure.batches);
+        maps.extend(table.map(|table| table.with_batches(batches)));
     }
     let checks = checks.into_iter().map(|own| own.check.measure).collect();
     Ok(ComparedReport { name, facts, checks, content: Content::Run(RunFiles { measures, maps }) })

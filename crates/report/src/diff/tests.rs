@@ -227,6 +227,12 @@ fn maps_are_compared_cell_by_cell() {
     // Noise exceeds 4.0 (of 3 cells) more often than once in a thousand maps.
     assert!(maps[0].is_noise());
     assert!(!maps::compare(&[map([10.0; 4], 0.3)], &[map([12.5; 4], 0.4)])[0].is_noise());
+    // With seven degrees of freedom noise goes further than 5.0.
+    let few = || [10.0, 12.4].map(|value| map([value; 4], 0.34).with_batches(Some(8)));
+    let [a, b] = few();
+    assert!(maps::compare(&[a], &[b])[0].is_noise());
+    let [a, b] = few().map(|map| map.with_batches(Some(1000)));
+    assert!(!maps::compare(&[a], &[b])[0].is_noise());
     let files = maps::pictures(&maps).unwrap();
     assert_eq!(files[0].name, "exit.illuminance.difference.png");
     assert!(files[0].bytes.starts_with(b"\x89PNG"));

@@ -1,6 +1,6 @@
 //! Lettering: measures and draws text in the built-in font.
 //!
-//! The only module that uses plotters. The font is `DejaVu` Sans cut down to Latin, Greek, Cyrillic
+//! The only module of the program that uses plotters. The font is `DejaVu` Sans cut down to Latin, Greek, Cyrillic
 //! and the symbols of physics (`font/`); system fonts are never used, so pictures are the same
 //! everywhere.
 

@@ -13,7 +13,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Number of groups of batches; batch i belongs to group i mod 128. A full set of groups is needed for an error bar.
+/// Number of groups of batches; batch i belongs to group i mod 128. With fewer batches each is a group of its own.
 pub const GROUPS: u64 = 128;
 /// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
 /// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).

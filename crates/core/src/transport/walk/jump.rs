@@ -5,8 +5,8 @@
 //! absorb, or only the medium, the whole loss is theirs. If both do, it can be divided for a round wall, whose chords are
 //! all of one length and multiply the throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and
 //! the wall the rest. Between flat walls, and where walls of several faces absorb, such a row is taken step by step. No
-//! random number is drawn, so the path is the same as step by step except for rounding; roulette waits until the bounce after
-//! the row.
+//! random number is drawn, so the path is the same as step by step except for rounding; roulette waits until the next
+//! bounce that starts no row.
 
 use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
 use crate::scene::{BounceRow, PlainLeg, Ray, RowReach, Scene, StartSurfaces};

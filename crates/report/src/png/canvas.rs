@@ -250,7 +250,7 @@ impl Canvas {
         }
     }
 
-    /// Inks a fine pixel, a transparent stroke unless it has done so before.
+    /// Inks a fine pixel; a transparent stroke inks it only once.
     fn touch(&mut self, column: usize, row: usize, ink: Ink) {
         let index = row * self.width * FINER + column;
         let pixel = &mut self.fine[3 * index..3 * index + 3];

@@ -22,9 +22,9 @@ pub(crate) const CLASSES_HEAD: &str =
 /// Text before the rows of [`choice_row`].
 pub(crate) const CHOICES_HEAD: &str = "A pilot run tried the estimators on each sensor. The table gives the \
     time that one thread would need to know the sensor's flux or map to 1 %, estimated from counted work \
-    (docs/method.md; with a time limit, on this machine). Sensors share the work of a run, so \
-    that one with gather paths of its own delays the others. The estimators are therefore chosen together: the largest delay of a \
-    sensor, compared with its best estimator in a run of its own, is as small as possible. Gathering takes at least the time \
+    (docs/method.md; with a time limit, on this machine). All sensors share the work of a run: gather paths that serve one \
+    sensor delay the others. The estimators are therefore chosen together, so that the largest delay of any sensor, compared \
+    with its best estimator in a run of its own, is as small as possible. Gathering takes at least the time \
     of its first 16 passes. It is rejected if its bias exceeds the target by more than noise or if an unbiased \
     estimator contradicts it. Any estimator is rejected if it found significantly less light from a source \
     than another did.";

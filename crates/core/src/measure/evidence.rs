@@ -116,9 +116,13 @@ impl<'a> Evidence<'a> {
             return self.measure(0.0, f64::INFINITY, unit, Status::NoSignal);
         }
         let (value, std_error) = self.readings.jackknife(function);
+        let light = self.readings.sum(light);
         // Where it is undefined without some group, its error is unknown.
-        let is_known = lit >= MIN_LIT_GROUPS && std_error.is_finite();
-        let status = if is_known { Status::Ok } else { Status::TooFew };
+        let status = if std_error.is_finite() {
+            trust(light.mean(), light.std_error(), lit)
+        } else {
+            Status::TooFew
+        };
         self.measure(value, std_error, unit, status)
     }
 

@@ -232,7 +232,7 @@ fn photons_contradict_gather_paths_beyond_noise_and_rounding() {
     };
     let status = |photons: f64, gather_paths: f64| {
         let counts = Counts::one(every_batch(gather_paths).photons);
-        let stages = vec![Stage { number: 0, counts }];
+        let stages = vec![Stage { number: 0, counts, segments: 0 }];
         let others = vec![EstimatorFindings {
             estimator: Estimator::Backward,
             sensors: vec![SensorId::new(0)],

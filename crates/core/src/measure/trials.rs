@@ -14,6 +14,27 @@ use std::f64::consts::PI;
 /// A cell of a field: mean and area.
 type Cell = (f64, f64);
 
+/// Batches of a run of limited time: from 40 to 80.
+const FEW_BATCHES: u32 = 40;
+
+/// How well the batches of a run show the errors of its cells.
+#[derive(Debug, Clone, Copy)]
+enum TrialBatches {
+    /// Exactly.
+    Many,
+    /// As far as [`FEW_BATCHES`] can.
+    Few,
+}
+
+impl TrialBatches {
+    fn name(self) -> String {
+        match self {
+            Self::Many => String::new(),
+            Self::Few => format!(" in {FEW_BATCHES} batches"),
+        }
+    }
+}
+
 /// Trials of a statistic with a known true value.
 struct StatisticTrials {
     name: String,
@@ -157,11 +178,34 @@ pub(crate) fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<Wei
     field.iter().map(part).collect()
 }
 
-fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [StatisticTrials; 3] {
+/// The same with errors as the batches of a run of limited time show them: each is off by chance.
+fn in_few_batches(cells: Vec<WeightedValue>, noise: &mut Noise) -> Vec<WeightedValue> {
+    let mut error = |std_error: f64| {
+        let squares = (1..FEW_BATCHES).map(|_| noise.normal().powi(2)).sum::<f64>();
+        std_error * (squares / f64::from(FEW_BATCHES - 1)).sqrt()
+    };
+    let of_cell = |WeightedValue { read, weight }| WeightedValue {
+        read: Noisy { std_error: error(read.std_error), ..read },
+        weight,
+    };
+    cells.into_iter().map(of_cell).collect()
+}
+
+fn field_trials(
+    (name, field): (&str, &[Cell]),
+    counts: f64,
+    batches: TrialBatches,
+    trials: usize,
+) -> [StatisticTrials; 3] {
     let mut noise = Noise::of_stream(9);
     let mut found = [const { Vec::<StatisticTrial>::new() }; 3];
     for _ in 0..trials {
-        let Evenness { min_avg, min_max, cv, .. } = evenness(&counted(field, counts, &mut noise));
+        let cells = counted(field, counts, &mut noise);
+        let cells = match batches {
+            TrialBatches::Many => cells,
+            TrialBatches::Few => in_few_batches(cells, &mut noise),
+        };
+        let Evenness { min_avg, min_max, cv, .. } = evenness(&cells);
         for (all, CorrectedStatistic { value, std_error, interval, .. }) in
             found.iter_mut().zip([min_avg, min_max, cv])
         {
@@ -171,7 +215,7 @@ fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [Stat
     let truth = truth(field);
     let mut found = found.into_iter();
     [(0, "min/avg"), (1, "min/max"), (2, "CV")].map(|(at, what)| StatisticTrials {
-        name: format!("{name} {counts} {what}"),
+        name: format!("{name} {counts}{} {what}", batches.name()),
         truth: truth[at],
         found: found.next().expect("three statistics"),
     })
@@ -286,8 +330,10 @@ const BEAMS: [(f64, usize, TrialCurve); 5] = [
 fn all_trials(trials: usize) -> Vec<StatisticTrials> {
     let mut all = Vec::new();
     for (name, field) in fields() {
-        for counts in [10.0, 100.0] {
-            all.extend(field_trials(name, &field, counts, trials));
+        for (counts, batches) in
+            [(10.0, TrialBatches::Many), (100.0, TrialBatches::Many), (100.0, TrialBatches::Few)]
+        {
+            all.extend(field_trials((name, &field), counts, batches, trials));
         }
     }
     for power in [1.0, 5.0, 20.0, 60.0] {

@@ -7,7 +7,7 @@
 use crate::rng::{Dimension, Numbers, Sampler};
 
 /// Most paths in a stratum of a trial of some strata: what more would gain follows from fewer.
-const TRIED_EACH: u64 = 8;
+const TRIED_EACH: u64 = 128;
 /// Least strata in a batch of a trial, if there are as many.
 const LEAST_TRIED: u64 = 4;
 
@@ -126,10 +126,10 @@ mod tests {
     fn a_trial_has_paths_in_some_strata_as_a_run_has_in_all() {
         let run = StratumShares::of(856, 20_000);
         let trial = run.for_trial(500);
-        assert_eq!((run.each(), trial.each(), trial.tried), (32, 8, 62));
+        assert_eq!((run.each(), trial.each(), trial.tried), (32, 32, 15));
         assert_eq!(StratumShares::of(856, 1000).for_trial(500).each(), 2, "as a run");
         assert_eq!(StratumShares::of(856, 20_000).for_trial(16).each(), 4, "in four strata");
-        assert_eq!(StratumShares::of(20, 1280).for_trial(500).each(), 16, "in all strata");
+        assert_eq!(StratumShares::of(5, 1 << 14).for_trial(4000).each(), 512, "in all strata");
         for (strata, of_run, about) in [(2, 4096, 64), (856, 100, 64), (1, 4096, 64)] {
             let trial = StratumShares::of(strata, of_run).for_trial(about);
             assert_eq!(trial.tried, strata, "all strata");

@@ -2,11 +2,16 @@
 //! need; a run that may end at any time, with a target, has small ones.
 
 use crate::plan::{RunPlan, StopRules};
-use crate::rng::Points;
+use crate::rng::{Points, StratumShares};
 use crate::transport::tally::readings::GROUPS;
 use crate::transport::tally::work;
 use crate::transport::trial::PhotonPilot;
 
+/// Share of the work for photons where all sensors are estimated backward: for the balance and for
+/// light outside the aim, 1.
+pub(crate) const LEAST_SHARE: f64 = 0.1;
+/// Share of the work for photons beside gather paths otherwise, 1.
+pub(crate) const EQUAL_SHARE: f64 = 0.5;
 /// Target number of segments of a batch: long enough that summing costs little, short enough
 /// that little is lost when a run is stopped.
 const BATCH_SEGMENTS: u64 = 1 << 15;
@@ -54,10 +59,11 @@ impl<'a> BatchSizes<'a> {
         // A number of batches repeats a run that time has ended.
         let is_timed = left.is_some() || batches.is_some();
         let [segments, large] = if is_timed { LARGE_TIMED_BATCH } else { LARGE_BATCH };
+        let path = work::of_photon_path(pilot.segments_per_path);
         let large = large.min(segments / pilot.segments_per_path as u64);
         let most = if is_known { usual.max(large) } else { usual };
         let by_time = left.map(|left| CERTAIN_SHARE * threads * left);
-        Self { plan, usual, most, path: work::of_photon_path(pilot.segments_per_path), by_time }
+        Self { plan, usual, most, path, by_time }
     }
 
     /// Photon paths of a batch without other paths. A number of paths is divided evenly among the batches of whole waves, where
@@ -83,6 +89,21 @@ impl<'a> BatchSizes<'a> {
     /// Work of such a batch, ns.
     pub(crate) fn work(&self) -> f64 {
         self.photons() as f64 * self.path
+    }
+
+    /// Photon paths of a usual batch in which they have this share of the work, and the work of its other paths, ns.
+    pub(crate) fn shared(&self, share: f64) -> (u64, f64) {
+        let photons = Points::even_count((share * self.usual as f64) as u64);
+        (photons, (1.0 - share) / share * photons as f64 * self.path)
+    }
+
+    /// Gather paths of a batch from one sensor alone, of `of_path` ns each, before they are divided evenly among its strata.
+    pub(crate) fn gather_paths(&self, of_path: f64, strata: u64) -> u64 {
+        let (photons, others) = self.shared(LEAST_SHARE);
+        let usual = Points::even_count((others / of_path) as u64);
+        let divided = StratumShares::of(strata, usual).paths;
+        let work = photons as f64 * self.path + divided as f64 * of_path;
+        usual * self.growth(photons + divided, work)
     }
 
     /// How many times the usual paths a batch of photons and other paths has: a power of two, so that every path's number is one.

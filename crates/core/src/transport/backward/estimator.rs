@@ -115,15 +115,14 @@ impl<'s> Backward<'s> {
     }
 }
 
-/// Gather paths of some sensors with this much work in total, divided into batches, as a trial of those of the run.
-pub(crate) fn paths_for<'a>(trials: &Trials<'a>, effort: f64) -> Option<Backward<'a>> {
+/// Gather paths of some sensors with this much work in total, divided into batches, and the work of each, ns.
+pub(crate) fn paths_for<'a>(trials: &Trials<'a>, effort: f64) -> Option<(Backward<'a>, f64)> {
     let Trials { scene, plan, sensors, signal, .. } = *trials;
     let RunPlan { seed, bounce_limit, .. } = plan;
     let backward = Backward::new(scene, sensors, seed ^ SEED, *bounce_limit);
     let work = backward.work_of_path(signal)?;
-    let of_sensor = |effort: f64| (effort / sensors.len() as f64 / work) as u64;
-    let of_run = of_sensor(trials.batch_work);
-    Some(backward.with_paths(of_sensor(effort / BATCHES as f64)).trying(of_run))
+    let of_batch = effort / BATCHES as f64;
+    Some((backward.with_paths((of_batch / sensors.len() as f64 / work) as u64), work))
 }
 
 /// Batches of a trial after `by_photons` ns of work by photons. A sensor that is alone takes its share of the gather paths.
@@ -142,7 +141,9 @@ pub(crate) fn tried_batches(
 /// Tries gather paths that meet the sources; `None` if stopped.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
     trials.by_size(Estimator::Backward, |effort| {
-        let backward = paths_for(trials, effort)?.in_cells();
+        let (backward, of_path) = paths_for(trials, effort)?;
+        let of_run = |strata| trials.sizes.gather_paths(of_path, strata);
+        let backward = backward.in_cells().trying(of_run);
         let traced = |batch| {
             let pace = Pace::new(trials.signal);
             let mut readings =

@@ -129,7 +129,8 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
     trials.by_size(Estimator::Mix, |effort| {
         let half = 0.5 * effort;
         let forward = forward::photons_for(trials, half);
-        let backward = paths_for(trials, half)?.with_weights(Weights::Shared);
+        let (backward, _) = paths_for(trials, half)?;
+        let backward = backward.with_weights(Weights::Shared);
         let photon_fluxes = forward.photon_fluxes();
         let traced = |batch| {
             let pace = Pace::new(trials.signal);

@@ -33,8 +33,8 @@ pub(crate) struct Backward<'s> {
     pub(crate) bounce_limit: u32,
     /// Gather paths per batch of each sensor, before they are divided evenly among its cells.
     pub(crate) paths: u64,
-    /// The same of a batch of the run, in a trial.
-    of_run: Option<u64>,
+    /// The same of a batch of a run for each sensor alone, in a trial.
+    of_run: Option<Vec<u64>>,
     pub(crate) weights: Weights,
     /// How all techniques that find a path divide its light.
     pub(crate) sharing: Sharing,
@@ -108,9 +108,10 @@ impl<'s> Backward<'s> {
         Self { strata, ..self }
     }
 
-    /// The same as a trial of batches with this many paths from each sensor: in some of its cells, if they are many.
-    pub(crate) fn trying(self, paths: u64) -> Self {
-        Self { of_run: Some(paths), ..self }
+    /// The same as a trial of batches with so many paths from a sensor with this many strata: in some of them, if they are many.
+    pub(crate) fn trying(self, paths: impl Fn(u64) -> u64) -> Self {
+        let of_run = (0..self.sensors.len()).map(|sensor| paths(self.strata_count(sensor)));
+        Self { of_run: Some(of_run.collect()), ..self }
     }
 
     /// The same with other weights.
@@ -130,11 +131,16 @@ impl<'s> Backward<'s> {
 
     /// The gather paths of a batch from a sensor, by its place among the sensors.
     pub(crate) fn shares(&self, sensor: usize) -> StratumShares {
-        let strata = self.strata.get(sensor).map_or(1, Strata::count) as u64;
-        match self.of_run {
+        let strata = self.strata_count(sensor);
+        match &self.of_run {
             None => StratumShares::of(strata, self.paths),
-            Some(of_run) => StratumShares::of(strata, of_run).for_trial(self.paths),
+            Some(of_run) => StratumShares::of(strata, of_run[sensor]).for_trial(self.paths),
         }
+    }
+
+    /// Strata of a sensor, by its place among the sensors; 1 where nothing is divided.
+    fn strata_count(&self, sensor: usize) -> u64 {
+        self.strata.get(sensor).map_or(1, Strata::count) as u64
     }
 
     /// The shares of one batch. In a trial, each pair of batches takes the same randomly drawn strata.
@@ -150,8 +156,8 @@ impl<'s> Backward<'s> {
 
     /// The strata of a sensor that a trial takes, by its place among the sensors; `None` if the run will not have paths in all.
     pub(crate) fn tried_strata(&self, sensor: usize) -> Option<TriedStrata> {
-        let strata = self.strata.get(sensor)?.count() as u64;
-        let each_of_run = StratumShares::of(strata, self.of_run?).each();
+        let strata = self.strata_count(sensor);
+        let each_of_run = StratumShares::of(strata, self.of_run.as_ref()?[sensor]).each();
         let shares = self.shares(sensor);
         let tried = TriedStrata { share: shares.share(), each: shares.each(), each_of_run };
         (strata > 1 && each_of_run > 0).then_some(tried)

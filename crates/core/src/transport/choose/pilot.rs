@@ -50,13 +50,13 @@ pub(crate) fn choose(
 ) -> Option<Vec<EstimatorChoice>> {
     let sensors: Vec<SensorId> = (0..scene.sensors.len()).map(SensorId::new).collect();
     let photons = photons.with_passes_for(plan, left.map(|work| work / passes_in_turn()));
-    let batch_work = BatchSizes::new(plan, photons, left).work();
+    let sizes = BatchSizes::new(plan, photons, left);
     let given = budget(plan, photons, left.map(|work| 1e-9 * work));
     let [least, most] = BOUNDS.map(|bound| photons.speed * bound);
     let mut choices = |budget: f64| {
         let effort = 1e9 * (SHARE * budget).clamp(least, most) / Estimator::TRIED.len() as f64;
         let sensors = &sensors;
-        let trials = Trials { scene, plan, photons, sensors, effort, batch_work, signal };
+        let trials = Trials { scene, plan, photons, sensors, effort, sizes, signal };
         choices(&trials, budget, watch)
     };
     let found = match &plan.stop.target {

@@ -4,13 +4,8 @@
 //! run of its own. The chosen set of estimators keeps the largest of these slowdowns as small as possible.
 
 use crate::plan::Estimator;
+use crate::transport::batches::{EQUAL_SHARE, LEAST_SHARE};
 use crate::transport::choose::choice::EstimatorChoice;
-
-/// Share of the work for photons where all sensors are estimated backward: for the balance and for
-/// light outside the aim, 1.
-pub(crate) const LEAST_SHARE: f64 = 0.1;
-/// Share of the work for photons beside gather paths otherwise, 1.
-pub(crate) const EQUAL_SHARE: f64 = 0.5;
 
 /// The best for a sensor alone.
 pub(crate) struct Wanted {

@@ -249,7 +249,7 @@ mod tests {
         let photons = readings(0.0, 0.0, 8);
         let judged = |before: Option<&Stage>| {
             let orders = [0.9, 1.0, 1.03].map(|flux| readings(flux, 1e-6, 16));
-            let stage = Stage { number: 2, counts: Counts::closed(orders) };
+            let stage = Stage { number: 2, counts: Counts::closed(orders), segments: 0 };
             Judged::new((&stage, before), &photons, &[0]).bias
         };
         assert!((judged(None) - 0.2 / 3.0).abs() < 1e-5, "an edge");
@@ -268,7 +268,7 @@ mod tests {
         let photons = readings(0.0, 0.0, 8);
         let alternate = |sign: f64| readings(1.0, sign * 0.1, 9);
         let counts = Counts::closed([alternate(1.0), alternate(-1.0), alternate(-1.0)]);
-        let stage = Stage { number: 0, counts };
+        let stage = Stage { number: 0, counts, segments: 0 };
         let judged = Judged::new((&stage, None), &photons, &[0]);
         assert_eq!(judged.resolution, Resolution::InNoise);
         let [mean, error] = [0.2 / 9.0, 0.2 * ((80.0 / 81.0) / 8.0_f64).sqrt()];
@@ -288,7 +288,7 @@ mod tests {
     /// A stage whose E1 differs from E0 and E00, which agree.
     fn stage(number: u32, second: f64, scatter: f64, passes: u64) -> Stage {
         let orders = [second, 1.0, 1.0].map(|flux| readings(flux, scatter, passes));
-        Stage { number, counts: Counts::closed(orders) }
+        Stage { number, counts: Counts::closed(orders), segments: 0 }
     }
 
     #[test]

@@ -59,10 +59,9 @@ impl Findings {
         self.others.iter().filter_map(|found| Some((&found.sensors[..], found.settings.as_ref()?)))
     }
 
-    /// Segments of photon and gather paths, as far as they still count.
+    /// Segments of photon and gather paths.
     pub fn segments(&self) -> u64 {
-        let stages = self.others.iter().flat_map(|found| &found.stages);
-        let others: u64 = stages.map(|stage| stage.counts.first().segments).sum();
-        self.photons.segments + others
+        let latest = self.others.iter().filter_map(|found| found.stages.last());
+        self.photons.segments + latest.map(|stage| stage.segments).sum::<u64>()
     }
 }

@@ -1,12 +1,10 @@
 //! Decisions before a run: the estimator of each sensor, and the size of its batches.
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::Points;
 use crate::scene::{Scene, SensorId};
 use crate::transport::backward::paths::{Backward, Weights};
-use crate::transport::batches::{BatchSizes, usual_batch};
+use crate::transport::batches::{BatchSizes, EQUAL_SHARE, LEAST_SHARE, usual_batch};
 use crate::transport::choose::pilot::choose;
-use crate::transport::choose::sharing::{EQUAL_SHARE, LEAST_SHARE};
 use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::gather::estimator::{Combination, Gather};
@@ -74,9 +72,7 @@ impl<'s> Run<'s> {
         let mut photons = match (by_pass, work) {
             (Some(photons), _) => photons,
             (None, PhotonWork::Alone) => sizes.photons(),
-            (None, PhotonWork::Shared(share)) => {
-                Points::even_count((share * sizes.usual as f64) as u64)
-            }
+            (None, PhotonWork::Shared(share)) => sizes.shared(share).0,
         };
         // At least one path of each source.
         photons = photons.max(scene.sources.len() as u64).max(1);

@@ -67,6 +67,8 @@ pub struct Stage {
     pub number: u32,
     /// Its counts.
     pub counts: Counts,
+    /// Segments traced in it and in all stages before it.
+    pub segments: u64,
 }
 
 /// Stages that a report has: two that may give the value, and one before them.
@@ -79,12 +81,14 @@ pub struct Series {
     sums: Sums<Counts>,
     /// The last finished stages, at most [`KEPT`].
     finished: Vec<Stage>,
+    /// Segments of all finished stages.
+    segments_before: u64,
 }
 
 impl Series {
     /// The first stage, from the nodes of the tree over all batches in their order.
     pub(crate) fn of_nodes(nodes: Vec<Counts>) -> Self {
-        Self { stage: 0, sums: Sums::of_nodes(nodes), finished: Vec::new() }
+        Self { sums: Sums::of_nodes(nodes), ..Self::default() }
     }
 
     /// Number of the stage in progress, from 0.
@@ -106,6 +110,7 @@ impl Series {
     /// larger error.
     pub(crate) fn begin_stage(&mut self, stage: u32) {
         let ends = self.in_progress();
+        self.segments_before = ends.as_ref().map_or(self.segments_before, |ends| ends.segments);
         self.finished.drain(..self.finished.len().saturating_sub(KEPT - 1));
         self.finished.extend(ends);
         self.stage = stage;
@@ -123,6 +128,8 @@ impl Series {
 
     /// The stage in progress; `None` before its first batch.
     pub(crate) fn in_progress(&self) -> Option<Stage> {
-        Some(Stage { number: self.stage, counts: self.sums.total()? })
+        let counts = self.sums.total()?;
+        let segments = self.segments_before + counts.first().segments;
+        Some(Stage { number: self.stage, counts, segments })
     }
 }

@@ -16,6 +16,10 @@ use crate::transport::walk::scatter::{scatter_gather_path, scatter_photon};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
+/// Throughput below which roulette ends paths after a row of bounces, 1. A row ends with its leg, or where single bounces
+/// begin: roulette would save little there and cost noise, except where rows follow each other for ever.
+const ROULETTE_AFTER_ROW: f64 = 1e-6;
+
 /// Follows a path until it ends or the observer breaks.
 #[inline]
 pub fn walk<V: Observer>(
@@ -68,12 +72,10 @@ pub fn walk<V: Observer>(
             _ = observer.see(&path, Event::Cut(path.throughput));
             return;
         }
-        // A row ends with its leg, or where single bounces begin: roulette would save little there, and cost noise.
         let took_row = path.depth > depth + 1;
-        if !took_row
-            && path.throughput < observer.roulette_below()
-            && roulette(&mut path, sampler, observer).is_break()
-        {
+        let below = observer.roulette_below();
+        let below = if took_row { below.min(ROULETTE_AFTER_ROW) } else { below };
+        if path.throughput < below && roulette(below, &mut path, sampler, observer).is_break() {
             return;
         }
     }
@@ -90,14 +92,14 @@ fn leave<V: Observer>(path: &Path, observer: &mut V) {
     _ = observer.see(path, event);
 }
 
-/// Ends a path of small throughput, or continues it with the threshold's.
+/// Ends a path of small throughput, or continues it with that of the threshold, `below`.
 #[inline(always)]
 fn roulette<V: Observer>(
+    below: f64,
     path: &mut Path,
     sampler: &mut Sampler<impl Numbers>,
     observer: &mut V,
 ) -> ControlFlow<()> {
-    let below = observer.roulette_below();
     let survives = sampler.one(Dimension::Roulette) * below < path.throughput;
     let after = if survives { below } else { 0.0 };
     observer.see(path, Event::Roulette(path.throughput - after))?;

@@ -5,8 +5,8 @@
 //! absorb, or only the medium, the whole loss is theirs. If both do, it can be divided for a round wall, whose chords are
 //! all of one length and multiply the throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and
 //! the wall the rest. Between flat walls, and where walls of several faces absorb, such a row is taken step by step. No
-//! random number is drawn, so the path is the same as step by step except for rounding; roulette waits until the next
-//! bounce that starts no row.
+//! random number is drawn, so the path is the same as step by step except for rounding; roulette waits until hardly anything
+//! is left, or until the next bounce that starts no row.
 
 use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
 use crate::scene::{BounceRow, PlainLeg, Ray, RowReach, Scene, StartSurfaces};
@@ -277,16 +277,9 @@ mod tests {
         }
     }
 
-    fn fate<const JUMPS: bool, const BACK: bool>(
-        (scene, inside): (&Scene, &Inside),
-        (index, limit): (u64, u32),
-    ) -> Fate<JUMPS, BACK> {
-        let mut sampler = Sampler::for_path(3, 0, index);
-        let at = disk(sampler.pair(Dimension::EmitPosition));
-        let dir = cosine_hemisphere(sampler.pair(Dimension::EmitDirection));
-        let start = frame().point_to_world(0.999 * RADIUS * at + 0.01 * DVec3::Z);
-        let path = Path {
-            ray: Ray::new(start, frame().to_world(dir)),
+    fn start((scene, inside): (&Scene, &Inside), ray: Ray) -> Path {
+        Path {
+            ray,
             throughput: 1.0,
             wavelength: REFERENCE_WAVELENGTH,
             source: None,
@@ -294,7 +287,18 @@ mod tests {
             inside: inside.clone(),
             on: StartSurfaces::default(),
             depth: 0,
-        };
+        }
+    }
+
+    fn fate<const JUMPS: bool, const BACK: bool>(
+        (scene, inside): (&Scene, &Inside),
+        (index, limit): (u64, u32),
+    ) -> Fate<JUMPS, BACK> {
+        let mut sampler = Sampler::for_path(3, 0, index);
+        let at = disk(sampler.pair(Dimension::EmitPosition));
+        let dir = cosine_hemisphere(sampler.pair(Dimension::EmitDirection));
+        let at = frame().point_to_world(0.999 * RADIUS * at + 0.01 * DVec3::Z);
+        let path = start((scene, inside), Ray::new(at, frame().to_world(dir)));
         let mut fate = Fate::default();
         walk(scene, path, limit, &mut sampler, &mut fate);
         fate
@@ -339,6 +343,42 @@ mod tests {
             assert_same_fates::<true>(&bar(), &in_rod),
         ] {
             assert!(events < 0.5, "jumps leave {events} of all events");
+        }
+    }
+
+    /// What is left of a path in short rows that follow each other, as between the corners of a ring, where roulette acts.
+    #[derive(Debug, Default)]
+    struct InShortRows(Option<f64>);
+
+    impl Observer for InShortRows {
+        fn allows_jumps(&self) -> bool {
+            true
+        }
+
+        fn limit_row(&self, _: &Path, reach: &mut RowReach) {
+            reach.end_after(6);
+        }
+
+        fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+            if matches!(event, Event::Roulette(_)) {
+                self.0.get_or_insert(path.throughput);
+            }
+            ControlFlow::Continue(())
+        }
+    }
+
+    #[test]
+    fn roulette_ends_rows_that_follow_each_other_where_hardly_anything_is_left() {
+        let (scene, inside) = (duct(), Inside::default());
+        for index in 0..PATHS {
+            let mut sampler = Sampler::for_path(3, 0, index);
+            let across = std::f64::consts::TAU * sampler.one(Dimension::EmitDirection);
+            // Almost across the axis: thousands of bounces to the end.
+            let dir = DVec3::new(across.cos(), across.sin(), 1e-3);
+            let ray = Ray::new(frame().point_to_world(DVec3::Z), frame().to_world(dir.normalize()));
+            let mut found = InShortRows::default();
+            walk(&scene, start((&scene, &inside), ray), LIMIT, &mut sampler, &mut found);
+            assert!(found.0.expect("roulette acts before the end") < 1e-6, "{found:?}");
         }
     }
 

@@ -234,3 +234,25 @@ pub(crate) fn status_by_error(value: f64, std_error: f64) -> Status {
 pub(crate) fn enough_batches(batches: u64) -> Status {
     if batches < MIN_LIT_GROUPS as u64 { Status::TooFew } else { Status::Ok }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::samples::{add, readings, rectangle, scene};
+    use crate::scene::SourceId;
+
+    #[test]
+    fn a_function_of_light_that_is_hardly_known_has_found_too_few() {
+        let scene = scene(&[("led", 1.0)], vec![("exit", rectangle(1.0, 1, 1))]);
+        let slot = Layout::new(&scene).sensor_flux(SensorId::new(0), SourceId::new(0));
+        let status = |flux: &dyn Fn(u64) -> f64| {
+            let found = readings(&scene, 64, |index, _, batch| add(batch, slot, flux(index)));
+            let evidence = Evidence::new(&scene, &found.photons);
+            evidence.function(&[slot], "1", |flux| flux(slot) / flux(slot)).status
+        };
+        assert_eq!(status(&|_| 1.0), Status::Ok);
+        // Lit in every group, but known from one of them.
+        assert_eq!(status(&|index| if index == 5 { 1.0 } else { 1e-20 }), Status::TooFew);
+        assert_eq!(status(&|_| 0.0), Status::NoSignal);
+    }
+}

@@ -100,7 +100,7 @@ pub struct Measures {
     pub batches: u64,
     /// Photon and gather paths traced.
     pub paths: u64,
-    /// Their segments (for gathering, those of the last three stages); a row of bounces taken in one step counts as one.
+    /// Their segments; a row of bounces taken in one step counts as one.
     pub segments: u64,
 }
 

@@ -14,8 +14,8 @@ use std::f64::consts::PI;
 /// A cell of a field: mean and area.
 type Cell = (f64, f64);
 
-/// Batches of a run of limited time: from 40 to 80.
-const FEW_BATCHES: u32 = 40;
+/// Batches of a short run of limited time on one thread, which has 20 to 40.
+const FEW_BATCHES: u32 = 20;
 
 /// How well the batches of a run show the errors of its cells.
 #[derive(Debug, Clone, Copy)]

@@ -6,10 +6,8 @@
 
 use crate::rng::{Dimension, Numbers, Sampler};
 
-/// Most paths in a stratum of a trial of some strata: what more would gain follows from fewer.
-const TRIED_EACH: u64 = 128;
 /// Least strata in a batch of a trial, if there are as many.
-const LEAST_TRIED: u64 = 4;
+const LEAST_TRIED: u64 = 8;
 
 /// Strata of the paths of a batch.
 #[derive(Debug, Clone, Copy)]
@@ -35,13 +33,13 @@ impl StratumShares {
     }
 
     /// The same for a trial with about `about` paths. If these cannot give every stratum as many paths as the run does, only some strata
-    /// are tried, with as many in each as in the run but at most [`TRIED_EACH`], unless `about` gives all strata more; what more would
-    /// gain is extrapolated.
+    /// are tried, at least [`LEAST_TRIED`] if there are as many, with as many paths in each as in the run or as `about` allows. Fewer
+    /// paths are then fewer in each stratum, which shows what more would gain.
     pub(crate) fn for_trial(self, about: u64) -> Self {
         if self.strata < 2 || self.paths < self.strata || self.paths <= about {
             return Self::of(self.strata, about);
         }
-        let most = TRIED_EACH.min(about / LEAST_TRIED).max(about / self.strata).max(1);
+        let most = (about / LEAST_TRIED.min(self.strata)).max(1);
         let each = self.each().min(1 << most.ilog2());
         let tried = (about / each).clamp(1, self.strata);
         Self { tried, paths: each * tried, ..self }
@@ -128,7 +126,12 @@ mod tests {
         let trial = run.for_trial(500);
         assert_eq!((run.each(), trial.each(), trial.tried), (32, 32, 15));
         assert_eq!(StratumShares::of(856, 1000).for_trial(500).each(), 2, "as a run");
-        assert_eq!(StratumShares::of(856, 20_000).for_trial(16).each(), 4, "in four strata");
+        assert_eq!(StratumShares::of(856, 20_000).for_trial(16).each(), 2, "in eight strata");
+        for (strata, about) in [(45, 8192), (856, 8192), (20, 4096)] {
+            let run = StratumShares::of(strata, 1 << 19);
+            let [large, small] = [about, about / 16].map(|about| run.for_trial(about).each());
+            assert!(large >= 8 * small, "the gain shows: {large}, {small} in {strata}");
+        }
         assert_eq!(StratumShares::of(5, 1 << 14).for_trial(4000).each(), 512, "in all strata");
         for (strata, of_run, about) in [(2, 4096, 64), (856, 100, 64), (1, 4096, 64)] {
             let trial = StratumShares::of(strata, of_run).for_trial(about);

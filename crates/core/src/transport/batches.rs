@@ -19,12 +19,12 @@ const BATCH_SEGMENTS: u64 = 1 << 15;
 const BATCH_PATHS: u64 = 4096;
 /// Most segments and paths of a batch in a run to a number of paths.
 const LARGE_BATCH: [u64; 2] = [1 << 20, 1 << 16];
-/// The same in a run of limited time: a quarter of a second of one thread in guides of exact shapes.
+/// The same in a run of limited time.
 const LARGE_TIMED_BATCH: [u64; 2] = [1 << 21, 1 << 17];
-/// Least batches of a run of limited time: its errors are then known to 13 %.
-const LEAST_BATCHES: u64 = 32;
-/// Least batches for each thread.
-const BATCHES_PER_THREAD: u64 = 16;
+/// Longest time of a batch in a run of limited time, ns of one thread: progress shows, and little is lost at the end.
+const LONGEST_BATCH: f64 = 2.5e8;
+/// Least batches for each thread in a run of limited time: its errors are then known to 18 %.
+const LEAST_BATCHES: u64 = 16;
 /// Share of the paths for which time is expected to suffice, 1: a run whose paths take longer still has enough batches.
 const CERTAIN_SHARE: f64 = 0.8;
 
@@ -60,7 +60,9 @@ impl<'a> BatchSizes<'a> {
         let is_timed = left.is_some() || batches.is_some();
         let [segments, large] = if is_timed { LARGE_TIMED_BATCH } else { LARGE_BATCH };
         let path = work::of_photon_path(pilot.segments_per_path);
-        let large = large.min(segments / pilot.segments_per_path as u64);
+        // A run that repeats another has its batches, whatever the speed of its machine.
+        let by_clock = left.map_or(u64::MAX, |_| (LONGEST_BATCH * pilot.speed / path) as u64);
+        let large = large.min(segments / pilot.segments_per_path as u64).min(by_clock);
         let most = if is_known { usual.max(large) } else { usual };
         let by_time = left.map(|left| CERTAIN_SHARE * threads * left);
         Self { plan, usual, most, path, by_time }
@@ -77,13 +79,13 @@ impl<'a> BatchSizes<'a> {
         self.by_time.map_or(self.usual, |work| {
             // Where hardly any time is left, a batch may still take a part of the grace.
             let paths = ((work / self.path) as u64).max(self.usual);
-            1 << (paths / self.least_batches()).clamp(1, self.most).ilog2()
+            1 << (paths / Self::least_batches()).clamp(1, self.most).ilog2()
         })
     }
 
     /// Least batches of a run of limited time: it may end while every thread is in one, and few of them may be lost.
-    fn least_batches(&self) -> u64 {
-        LEAST_BATCHES.max(BATCHES_PER_THREAD * rayon::current_num_threads() as u64)
+    fn least_batches() -> u64 {
+        LEAST_BATCHES * rayon::current_num_threads() as u64
     }
 
     /// Work of such a batch, ns.
@@ -112,7 +114,7 @@ impl<'a> BatchSizes<'a> {
         let by_time = self.by_time.map(|all| (all / work) as u64);
         let by_paths = self.plan.stop.paths.map(|all| all / paths);
         let Some(batches) = by_paths.or(by_time) else { return 1 };
-        let least = by_time.map_or(GROUPS, |_| self.least_batches());
+        let least = by_time.map_or(GROUPS, |_| Self::least_batches());
         let wanted = batches / self.plan.stop.batches.unwrap_or(least);
         let most = (self.most / self.usual).max(1);
         1 << wanted.clamp(1, most).ilog2()
@@ -153,12 +155,27 @@ mod tests {
             for seconds in [0.1, 1.0, 5.0] {
                 let sizes = BatchSizes::new(&plan, pilot(), Some(1e9 * seconds));
                 let batches = 1e9 * seconds / sizes.work();
-                assert!((40.0..=80.0).contains(&batches), "{batches} in {seconds} s");
+                assert!((20.0..=40.0).contains(&batches), "{batches} in {seconds} s");
                 assert!(sizes.photons().is_power_of_two());
             }
             let long = BatchSizes::new(&plan, pilot(), Some(1e12));
             assert!(long.photons() <= LARGE_TIMED_BATCH[1], "{}", long.photons());
+            let slow = PhotonPilot { speed: 0.05, ..pilot() };
+            let paths = BatchSizes::new(&plan, slow, Some(1e12)).photons();
+            assert_eq!(paths, 8192, "0.19 s at 23,000 ns each");
         });
+    }
+
+    #[test]
+    fn gather_paths_take_about_the_work_of_a_batch() {
+        let plan = plan(StopRules { time: Some(Duration::from_secs(60)), ..StopRules::default() });
+        let sizes = BatchSizes::new(&plan, pilot(), Some(6e10));
+        for (of_path, strata) in [(500.0, 1), (5000.0, 1), (500.0, 856)] {
+            let paths = sizes.gather_paths(of_path, strata);
+            let work = StratumShares::of(strata, paths).paths as f64 * of_path;
+            let share = work / sizes.work();
+            assert!((0.5..2.0).contains(&share), "{share}: to powers of two");
+        }
     }
 
     #[test]
@@ -208,9 +225,11 @@ mod tests {
             assert_eq!(BatchSizes::new(&whole, pilot(), None).growth(3000, 1.0), growth);
         }
         let timed = plan(StopRules { time: Some(Duration::MAX), ..StopRules::default() });
-        let most = BatchSizes::new(&timed, pilot(), Some(1e15)).growth(3000, 1e6);
-        assert!(most > 8, "{most}");
-        for growth in [1, 2, 4, 8, most] {
+        let slow = PhotonPilot { speed: 0.05, ..pilot() };
+        let [most, of_slow] = [pilot(), slow]
+            .map(|pilot| BatchSizes::new(&timed, pilot, Some(1e15)).growth(3000, 1e6));
+        assert!(most > 8 && of_slow < most, "{most} {of_slow}");
+        for growth in [1, 2, 4, 8, most, of_slow] {
             let part = asked(growth * 40 * 3000, Some(40));
             assert_eq!(BatchSizes::new(&part, pilot(), None).growth(3000, 1.0), growth);
         }

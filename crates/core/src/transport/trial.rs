@@ -23,8 +23,11 @@ pub(crate) const SEED: u64 = 0x7069_6c6f_7431;
 /// Segments of photon paths in an automatic pass of gathering where the length of the run is not known.
 pub(crate) const PASS_SEGMENTS: f64 = 1e6;
 
-/// Largest power of the size of batches by which a cost may be expected to fall, 1.
-const MOST_GAIN: f64 = 2.0;
+/// Largest power of the size of batches by which a cost may be expected to fall, 1: the variance falls as the square of the size.
+const MOST_GAIN: f64 = 1.0;
+/// The same of the paths in a stratum: scrambled points of a net reach a variance of n^-3 where light is smooth (Owen, Ann.
+/// Stat. 25 (1997) 1541).
+const MOST_GAIN_IN_STRATA: f64 = 2.0;
 /// Growth of the time to an error with the bias to be removed, log2 3: a stage with half the bias has half of the pairs in a
 /// pass, and twice the gather paths, which are half of the work.
 const STAGE_COST: f64 = 1.585;
@@ -162,21 +165,25 @@ impl Trials<'_> {
             }
             all
         };
-        // By how much larger batches, or paths in a stratum, are, and by how much those of the run.
         let sizes = |place: usize| match [&large, &small].map(|tried| tried.strata_of(place)) {
-            [Some(own), Some(few)] => {
-                [own.each as f64 / few.each as f64, own.each_of_run as f64 / own.each as f64]
-            }
-            _ => [large.work / small.work, BATCHES as f64 * self.sizes.work() / large.work_of_one],
+            [Some(own), Some(few)] => Growth {
+                tried: own.each as f64 / few.each as f64,
+                to_run: own.each_of_run as f64 / own.each as f64,
+                most_gain: MOST_GAIN_IN_STRATA,
+            },
+            _ => Growth {
+                tried: large.work / small.work,
+                to_run: BATCHES as f64 * self.sizes.work() / large.work_of_one,
+                most_gain: MOST_GAIN,
+            },
         };
         let of_sensor = |((mut tried, smaller), place): ((Tried, Tried), usize)| {
-            let [growth, to_run] = sizes(place);
             let lit = |batch: &&Readings| is_lit(self.scene, batch, self.sensors[place]);
             let lit = small.batches.iter().filter(lit).count();
             if let (Some(own), Some(smaller)) = (&mut tried.trial.cost, smaller.trial.cost)
                 && lit >= LIT_BATCHES
             {
-                *own = extrapolated([*own, smaller], growth, to_run);
+                *own = sizes(place).extrapolated([*own, smaller]);
             }
             tried
         };
@@ -203,16 +210,31 @@ impl Trials<'_> {
     }
 }
 
-/// A cost in batches that are larger by `to_run`, from that and the cost in batches smaller by `growth`.
-fn extrapolated([own, smaller]: [f64; 2], growth: f64, to_run: f64) -> f64 {
-    // A flux without noise costs nothing in batches of any size.
-    if own == 0.0 { 0.0 } else { own * to_run.powf(-gain(smaller / own, growth)) }
+/// By how much batches, or the paths in a stratum, are larger.
+#[derive(Debug, Clone, Copy)]
+struct Growth {
+    /// In the second set of batches than in the first, 1.
+    tried: f64,
+    /// In the run than in the second set, 1.
+    to_run: f64,
+    /// Largest power of the size by which a cost falls, 1.
+    most_gain: f64,
 }
 
-/// The power of the size of batches by which a cost falls: it was this much larger in batches smaller by `growth`. At most
-/// 2: scrambled points of a net reach a variance of n^-3 where light is smooth (Owen, Ann. Stat. 25 (1997) 1541).
-fn gain(larger: f64, growth: f64) -> f64 {
-    if growth > 1.0 { (larger.ln() / growth.ln()).clamp(0.0, MOST_GAIN) } else { 0.0 }
+impl Growth {
+    /// A cost in the run, from that in the second set of batches and that in the first.
+    fn extrapolated(self, [own, smaller]: [f64; 2]) -> f64 {
+        // A flux without noise costs nothing in batches of any size.
+        if own == 0.0 { 0.0 } else { own * self.to_run.powf(-self.gain(smaller / own)) }
+    }
+
+    /// The power of the size by which a cost falls that was this much larger in the first set.
+    fn gain(self, larger: f64) -> f64 {
+        if self.tried <= 1.0 {
+            return 0.0;
+        }
+        (larger.ln() / self.tried.ln()).clamp(0.0, self.most_gain)
+    }
 }
 
 /// Whether a batch has found light on a sensor.
@@ -300,15 +322,14 @@ mod tests {
 
     #[test]
     fn a_cost_falls_as_far_as_smaller_batches_show() {
-        assert!(
-            (gain(4.0, 16.0) - 0.5).abs() < 1e-12,
-            "a quarter of the cost in 16 times the size"
-        );
-        assert_eq!(gain(0.9, 16.0), 0.0, "noise");
-        assert_eq!(gain(1e3, 16.0), 2.0, "noise");
-        assert_eq!(gain(4.0, 1.0), 0.0, "batches of one size");
-        assert!((extrapolated([2.0, 8.0], 16.0, 4.0) - 1.0).abs() < 1e-12);
-        assert_eq!(extrapolated([0.0, 0.0], 16.0, 4.0), 0.0, "no noise");
+        let growth = |tried| Growth { tried, to_run: 4.0, most_gain: 1.0 };
+        let quarter = growth(16.0).gain(4.0);
+        assert!((quarter - 0.5).abs() < 1e-12, "a quarter of the cost in 16 times the size");
+        assert_eq!(growth(16.0).gain(0.9), 0.0, "noise");
+        assert_eq!(growth(16.0).gain(100.0), 1.0, "noise");
+        assert_eq!(growth(1.0).gain(4.0), 0.0, "batches of one size");
+        assert!((growth(16.0).extrapolated([2.0, 8.0]) - 1.0).abs() < 1e-12);
+        assert_eq!(growth(16.0).extrapolated([0.0, 0.0]), 0.0, "no noise");
     }
 
     #[test]

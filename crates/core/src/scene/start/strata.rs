@@ -9,7 +9,7 @@ use crate::scene::start::area::{AreaPoint, FaceArea};
 use crate::scene::sweep::WallChart;
 use crate::scene::{Goniometer, Grid, Patch, PrimId, Seeing, SurfaceSensor};
 use glam::{DVec2, DVec3};
-use lumiduct_base::math::{bracketed_root, uniform_sphere};
+use lumiduct_base::math::uniform_sphere;
 use std::f64::consts::PI;
 
 /// Most strata of a sensor: batches have fewer paths than this, so that more would bring nothing.
@@ -42,8 +42,6 @@ struct PlaneCell {
     /// The rectangle in which its points lie, mm.
     rect: ChartRect,
     rim: Rim,
-    /// Area over which its points are drawn, mm².
-    area: f64,
 }
 
 /// How the rim of a surface cuts a cell.
@@ -120,9 +118,9 @@ impl<'s> Strata<'s> {
             }
             SensorDivision::Plane(flat, prim, all) => {
                 let own = &all[stratum % parts];
-                let uv = own.draw(flat.region(), u)?;
+                let (uv, area) = own.draw(flat.region(), u)?;
                 let point = flat.frame().point_to_world(uv.extend(0.0));
-                (AreaPoint { point, normal: flat.frame().z, uv, prim: *prim }, own.area)
+                (AreaPoint { point, normal: flat.frame().z, uv, prim: *prim }, area)
             }
         };
         Some((at, area * parts as f64))
@@ -136,7 +134,7 @@ impl PlaneCell {
             return None;
         }
         if covered == 1.0 {
-            return Some(Self { rect, rim: Rim::Outside, area: rect.area() });
+            return Some(Self { rect, rim: Rim::Outside });
         }
         let half = match region {
             Region::Annulus { inner: 0.0, outer } => DVec2::splat(*outer),
@@ -147,7 +145,7 @@ impl PlaneCell {
             | Region::Polygon(_)
             | Region::Holed(_) => {
                 let rect = rect.intersection(&region.bounds());
-                return Some(Self { rect, rim: Rim::Other, area: rect.area() });
+                return Some(Self { rect, rim: Rim::Other });
             }
         };
         // The widest part of the ellipse in the cell is nearest to its axis.
@@ -156,25 +154,22 @@ impl PlaneCell {
         let min = rect.min.with_x(rect.min.x.max(-widest));
         let max = rect.max.with_x(rect.max.x.min(widest));
         let rect = ChartRect { min, max };
-        let area = region.area_in(rect);
-        (area > 0.0).then_some(Self { rect, rim: Rim::Ellipse(half), area })
+        (region.area_in(rect) > 0.0).then_some(Self { rect, rim: Rim::Ellipse(half) })
     }
 
-    /// A point for uniform `u`.
-    fn draw(&self, region: &Region, u: [f64; 2]) -> Option<DVec2> {
+    /// A point for uniform `u` with the reciprocal of its density, mm².
+    fn draw(&self, region: &Region, u: [f64; 2]) -> Option<(DVec2, f64)> {
+        let at = self.rect.at(u);
         match self.rim {
-            Rim::Outside => Some(self.rect.at(u)),
-            Rim::Other => Some(self.rect.at(u)).filter(|at| region.contains(*at)),
+            Rim::Outside => Some((at, self.rect.area())),
+            Rim::Other => region.contains(at).then(|| (at, self.rect.area())),
+            // Uniform in x and along the chord there. A uniform density would need a root, which takes longer than to trace a path
+            // through a tube.
             Rim::Ellipse(half) => {
-                // A share u of the area lies to its left.
-                let ChartRect { min, max } = self.rect;
-                let x = bracketed_root(min.x, max.x, |x| {
-                    let left = ChartRect { min, max: max.with_x(x) };
-                    let [low, high] = self.chord(half, x);
-                    (region.area_in(left) - u[0] * self.area, high - low)
-                });
-                let [low, high] = self.chord(half, x);
-                Some(DVec2::new(x, low + u[1] * (high - low)))
+                let [low, high] = self.chord(half, at.x);
+                let width = self.rect.max.x - self.rect.min.x;
+                let at = at.with_y(low + u[1] * (high - low));
+                (high > low).then_some((at, width * (high - low)))
             }
         }
     }

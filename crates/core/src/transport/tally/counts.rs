@@ -133,3 +133,27 @@ impl Series {
         Some(Stage { number: self.stage, counts, segments })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::tally::readings::Group;
+
+    fn batch(number: u64, segments: u64) -> Counts {
+        let group = Group { group: number, batches: 1, sums: vec![1.0] };
+        Counts::one(Readings { segments, ..Readings::of_groups(vec![group]) })
+    }
+
+    #[test]
+    fn the_last_stage_knows_the_segments_of_all_before_it() {
+        let mut series = Series::default();
+        for stage in 1..=5 {
+            series.push(batch(0, 10));
+            series.push(batch(1, 3));
+            assert_eq!(series.stages().last().unwrap().segments, 13 * u64::from(stage));
+            series.begin_stage(stage);
+        }
+        let kept = series.stages();
+        assert_eq!((kept.len(), kept.last().unwrap().segments), (KEPT, 65));
+    }
+}

@@ -92,7 +92,7 @@ fn leave<V: Observer>(path: &Path, observer: &mut V) {
     _ = observer.see(path, event);
 }
 
-/// Ends a path of small throughput, or continues it with that of the threshold, `below`.
+/// Ends a path of small throughput, or raises its throughput to `below`.
 #[inline(always)]
 fn roulette<V: Observer>(
     below: f64,

@@ -3,9 +3,9 @@
 
 use crate::plan::{RunPlan, StopRules};
 use crate::rng::{Points, StratumShares};
+use crate::transport::photon_pilot::PhotonPilot;
 use crate::transport::tally::readings::GROUPS;
 use crate::transport::tally::work;
-use crate::transport::trial::PhotonPilot;
 
 /// Share of the work for photons where all sensors are estimated backward: for the balance and for
 /// light outside the aim, 1.

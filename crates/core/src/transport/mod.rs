@@ -1,8 +1,8 @@
 //! Light through a scene: photon paths, the one bounce loop, estimators, and their readings.
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
-//! [`Findings`]. From the bottom up: `tally`, `stop`, `walk`; `task`, `trial` and `estimate`, what
-//! every estimator gets and gives; `batches`; `window`; `connect`; `forward`, `backward` and `gather`; `estimators`, the
+//! [`Findings`]. From the bottom up: `tally`, `stop`, `walk`; `photon_pilot`; `batches`; `task`, `trial` and `estimate`,
+//! what every estimator gets and gives; `window`; `connect`; `forward`, `backward` and `gather`; `estimators`, the
 //! one seam in front of them; `choose`, `run`.
 
 mod backward;
@@ -13,6 +13,7 @@ mod estimate;
 pub(crate) mod estimators;
 pub mod forward;
 pub mod gather;
+mod photon_pilot;
 mod run;
 pub mod stop;
 pub mod tally;
@@ -29,6 +30,7 @@ pub use estimate::Resolution;
 pub use estimate::{Account, AccountEntry, Bias};
 pub use forward::{CountedRay, RayCollection, Track, TrackEnd, counted_rays, tracks};
 pub use gather::{GatherSettings, Orders};
+pub use photon_pilot::PhotonPilot;
 pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tally::Stage;
@@ -40,7 +42,7 @@ pub use tally::sensor_reading::ClassSum;
 pub(crate) use tally::sensor_reading::Trail;
 pub use tally::{Cells, Counts, Layout};
 pub(crate) use tally::{Loss, TAILS};
-pub use trial::{Objection, PhotonPilot, Trial};
+pub use trial::{Objection, Trial};
 pub use walk::emitters::invisible;
 pub use walk::{Carries, Collision, Departure, Detection, Jump, Segment};
 pub use walk::{

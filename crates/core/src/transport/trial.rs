@@ -7,6 +7,7 @@ use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId, SourceId};
 use crate::tally::Tally;
 use crate::transport::batches::BatchSizes;
+use crate::transport::photon_pilot::PhotonPilot;
 use crate::transport::stop::StopSignal;
 use crate::transport::trial::strata::{PAIR, TriedStrata};
 use crate::transport::{Cells, Layout, Readings};
@@ -20,8 +21,6 @@ const SMALL: f64 = 1.0 / 16.0;
 const LIT_BATCHES: usize = BATCHES as usize / 2;
 /// The pilot uses random numbers of another seed, so that its paths do not count again in the run.
 pub(crate) const SEED: u64 = 0x7069_6c6f_7431;
-/// Segments of photon paths in an automatic pass of gathering where the length of the run is not known.
-pub(crate) const PASS_SEGMENTS: f64 = 1e6;
 
 /// Largest power of the size of batches by which a cost may be expected to fall, 1: the variance falls as the square of the size.
 const MOST_GAIN: f64 = 1.0;
@@ -92,34 +91,6 @@ pub(crate) struct Tried {
     pub(crate) by_source: Vec<Tally>,
     /// For a biased estimator: its bias, batch by batch.
     pub(crate) bias: Option<Tally>,
-}
-
-/// Measurements by pilot photons.
-#[derive(Debug, Clone, Copy)]
-pub struct PhotonPilot {
-    /// Mean number of segments of a photon path, where rows of mirror bounces are taken at once.
-    pub(crate) segments_per_path: f64,
-    /// The same step by step.
-    pub(crate) steps_per_path: f64,
-    /// Segments of photon paths in an automatic pass of gathering.
-    pub(crate) pass_segments: f64,
-    /// Work of an automatic pass of gathering where the time of the run is limited, ns.
-    pub(crate) pass_work: Option<f64>,
-    /// Work of this machine in a second over that of the reference machine, by the clock; 1 where no time is limited.
-    pub(crate) speed: f64,
-}
-
-impl PhotonPilot {
-    /// Photons with this many segments per path, or steps, in passes of the usual size.
-    pub fn new(segments_per_path: f64, steps_per_path: f64) -> Self {
-        let pass_segments = PASS_SEGMENTS;
-        Self { segments_per_path, steps_per_path, pass_segments, pass_work: None, speed: 1.0 }
-    }
-
-    /// The same where photons go step by step.
-    pub(crate) fn step_by_step(self) -> Self {
-        Self { segments_per_path: self.steps_per_path, ..self }
-    }
 }
 
 /// Batches of paths that have been traced for a trial.

@@ -16,9 +16,10 @@ use crate::transport::choose::choice::EstimatorChoice;
 use crate::transport::choose::sharing::{Wanted, in_common};
 use crate::transport::estimators;
 use crate::transport::gather::settings::passes_in_turn;
+use crate::transport::photon_pilot::PhotonPilot;
 use crate::transport::stop::StopSignal;
 use crate::transport::tally::work;
-use crate::transport::trial::{Objection, PhotonPilot, Trial, Trials, Tried};
+use crate::transport::trial::{Objection, Trial, Trials, Tried};
 
 /// Share of the budget of a run that is planned for trials, 1: with their preparation, the pilot takes 5 %.
 const SHARE: f64 = 0.04;

@@ -10,7 +10,7 @@ use crate::transport::gather::settings::{GatherSettings, SensorGroup};
 use crate::transport::gather::shares::MergedRecord;
 use crate::transport::gather::surfaces::SurfaceNumbers;
 use crate::transport::gather::watched::WatchedLegs;
-use crate::transport::trial::PhotonPilot;
+use crate::transport::photon_pilot::PhotonPilot;
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::{Layout, Readings, Stage};
 use smallvec::SmallVec;

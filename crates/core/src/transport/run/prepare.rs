@@ -10,12 +10,12 @@ use crate::transport::forward::Forward;
 use crate::transport::gather::estimator::{Combination, Gather};
 use crate::transport::gather::settings::{WAVE_PASSES, groups, passes_in_turn};
 use crate::transport::gather::trial::{PassWork, pass_work};
+use crate::transport::photon_pilot::PhotonPilot;
 use crate::transport::run::rounds::{Phase, Run};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::Series;
 use crate::transport::tally::readings::GROUPS;
 use crate::transport::tally::work;
-use crate::transport::trial::PhotonPilot;
 use crate::transport::{EstimatorChoice, GatherSettings, Readings, Stepping};
 use std::time::{Duration, Instant};
 

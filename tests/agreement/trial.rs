@@ -257,16 +257,11 @@ fn bounces_of(name: &str) -> Option<&str> {
 
 /// Whether a run has counted enough light of a sensor to know its mean number of bounces.
 fn knows_bounces(measures: &Measures, sensor: &str) -> bool {
-    let flux = &measures.values[&format!("{sensor}.flux")];
-    !is_dark(flux) && flux.std_error < MOST_NOISE_OF_BOUNCES * flux.value
-}
-
-/// Whether a run has hardly met light of more than ten bounces that the reference knows: it belongs to the tail of the mean. Gather
-/// paths meet trapped light in film rarely, but it then counts much.
-fn misses_deep_light(found: &Measures, expected: &Measures, sensor: &str) -> bool {
-    let [found, expected] =
-        [found, expected].map(|run| run.values[&format!("{sensor}.share_deeper_than_10")].status);
-    expected == Status::Ok && found != Status::Ok
+    let [flux, mean] =
+        ["flux", "bounces_mean"].map(|name| &measures.values[&format!("{sensor}.{name}")]);
+    !is_dark(flux)
+        && flux.std_error < MOST_NOISE_OF_BOUNCES * flux.value
+        && mean.status != Status::TooFew
 }
 
 /// Where the bias of a mean number of bounces is not resolved, that which is reported is no bound:
@@ -288,10 +283,8 @@ pub(crate) fn agree(what: &str, text: &str, ways: &[Way]) {
         let found = measures(text, way);
         for (name, measure) in found.values.iter().filter(|(name, _)| is_plain(name)) {
             let reference = &expected.values[name.as_str()];
-            let is_known = |sensor| {
-                [&expected, &found].iter().all(|run| knows_bounces(run, sensor))
-                    && !misses_deep_light(&found, &expected, sensor)
-            };
+            let is_known =
+                |sensor| [&expected, &found].iter().all(|run| knows_bounces(run, sensor));
             if is_dark(measure) && is_dark(reference) || !bounces_of(name).is_none_or(is_known) {
                 continue;
             }

@@ -126,9 +126,16 @@ impl<'a> Evidence<'a> {
         self.measure(value, std_error, unit, status)
     }
 
-    /// The mean of a number over the light of a sensor, from the sum of flux times that number. One more count whose number
-    /// differs by 1 is always possible: where all counted ones agree, that is the error.
-    pub(crate) fn mean_number(&self, weighted: &[usize], flux: &[usize]) -> Measure {
+    /// The mean of a number over the light of a sensor, from the sum of flux times that number and the flux of
+    /// light beyond some numbers. One more count whose number differs by 1 is always possible: where all
+    /// counted ones agree, that is the error. Paths that have hardly met a tail of which photons know that it
+    /// moves the mean by more than its error do not know that error either.
+    pub(crate) fn mean_number(
+        &self,
+        weighted: &[usize],
+        flux: &[usize],
+        tails: impl Iterator<Item = (usize, f64)>,
+    ) -> Measure {
         let mean = self.ratio(weighted, flux);
         if mean.status == Status::NoSignal {
             return mean;
@@ -140,7 +147,17 @@ impl<'a> Evidence<'a> {
             Estimator::Forward => by_error.max(self.path_flux() / all.mean()),
             _ => by_error,
         };
-        Measure { std_error: mean.std_error.hypot(one_count), ..mean }
+        let std_error = mean.std_error.hypot(one_count);
+        let photons = self.of_photons();
+        let is_missed = |(tail, number): (usize, f64)| {
+            let known = photons.ratio(&[tail], flux);
+            known.status == Status::Ok
+                && known.value * number > std_error
+                && self.ratio(&[tail], flux).status != Status::Ok
+        };
+        let misses = self.estimator != Estimator::Forward && { tails }.any(is_missed);
+        let status = if misses { mean.status.worst(Status::TooFew) } else { mean.status };
+        Measure { std_error, status, ..mean }
     }
 
     /// Flux of a sensor over flux that only photons know.
@@ -254,5 +271,37 @@ mod tests {
         // Lit in every group, but known from one of them.
         assert_eq!(status(&|index| if index == 5 { 1.0 } else { 1e-20 }), Status::TooFew);
         assert_eq!(status(&|_| 0.0), Status::NoSignal);
+    }
+
+    #[test]
+    fn a_mean_whose_tail_only_photons_have_met_has_found_too_few() {
+        let scene = scene(&[("led", 1.0)], vec![("exit", rectangle(1.0, 1, 1))]);
+        let (exit, layout) = (SensorId::new(0), Layout::new(&scene));
+        let [flux, weighted, tail] = [
+            layout.sensor_flux(exit, SourceId::new(0)),
+            layout.depth_weighted(exit),
+            layout.deeper(exit, 0),
+        ];
+        // Light of one bounce, and a share of light of 20.
+        let counted = |deep: &dyn Fn(u64) -> f64| {
+            readings(&scene, 64, |index, _, batch| {
+                // Errors of half a per cent.
+                let shallow = if index % 2 == 0 { 0.96 } else { 1.04 };
+                add(batch, flux, shallow + deep(index));
+                add(batch, weighted, shallow + 20.0 * deep(index));
+                add(batch, tail, deep(index));
+            })
+        };
+        let status = |share: f64, met: &dyn Fn(u64) -> f64| {
+            let (photons, paths) = (counted(&|_| share), counted(met));
+            let evidence = Evidence::new(&scene, &photons.photons)
+                .by(&paths.photons, (Estimator::Backward, exit));
+            evidence.mean_number(&[weighted], &[flux], [(tail, 10.0)].into_iter()).status
+        };
+        assert_eq!(status(0.01, &|_| 0.0), Status::TooFew);
+        assert_eq!(status(0.01, &|index| if index == 5 { 0.01 } else { 0.0 }), Status::TooFew);
+        assert_eq!(status(0.01, &|_| 0.01), Status::Ok);
+        // A tail that moves the mean by less than its error may be missed.
+        assert_eq!(status(1e-7, &|_| 0.0), Status::Ok);
     }
 }

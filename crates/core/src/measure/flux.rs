@@ -168,7 +168,9 @@ fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Mea
 fn depths(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let flux = evidence.layout.flux_slots(id);
     let layout = evidence.layout;
-    out.insert("bounces_mean".into(), evidence.mean_number(&[layout.depth_weighted(id)], &flux));
+    let tails = (0..).zip(TAILS).map(|(tail, depth)| (layout.deeper(id, tail), f64::from(depth)));
+    let mean = evidence.mean_number(&[layout.depth_weighted(id)], &flux, tails);
+    out.insert("bounces_mean".into(), mean);
     for (tail, depth) in TAILS.iter().enumerate() {
         let share = evidence.ratio(&[layout.deeper(id, tail)], &flux);
         out.insert(format!("share_deeper_than_{depth}"), share);

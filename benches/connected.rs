@@ -91,6 +91,7 @@ fn joined(
         index_to: 1.0,
         wavelength: REFERENCE_WAVELENGTH,
         grain: DVec3::ZERO,
+        s_share: Incidence::UNPOLARISED,
     };
     let value = wall.evaluate(&incidence, dir);
     if value == 0.0 {

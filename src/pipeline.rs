@@ -199,6 +199,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Result<Report> {
             repeat: repeat::command(job, findings, stop),
             target,
             bounce_limit: job.run.bounce_limit,
+            polarisation: job.scene.polarisation,
             leaks: report::leak_places(&findings.photons.leaks, job.scene.origin),
         },
         measures,

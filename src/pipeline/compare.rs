@@ -82,7 +82,7 @@ const CHECKPOINT_RATIO: f64 = std::f64::consts::SQRT_2;
 /// # Errors
 ///
 /// [`Error::Input`] as [`input::load`] and if the scene cannot be traced. [`Error::Usage`] if the sensor is unknown
-/// or ambiguous, a method cannot work on the scene, the light has a spectrum, the truth is missing or unusable, the folder is not free, or a
+/// or ambiguous, a method cannot work on the scene, the light has a spectrum or its polarisation is followed, the truth is missing or unusable, the folder is not free, or a
 /// run ends before anything is counted. [`Error::Output`] or [`Error::Io`] if the results cannot be composed or
 /// written.
 pub fn compare(
@@ -101,6 +101,10 @@ pub fn compare(
     if job.scene.is_spectral() {
         let message =
             "methods are compared without spectra; remove the key `spectrum` of the sources";
+        return Err(Error::Usage(message.into()));
+    }
+    if !job.scene.polarisation.is_ignored() {
+        let message = "methods are compared without polarisation: leave out `run.polarisation`";
         return Err(Error::Usage(message.into()));
     }
     let id = sensor(&job, options.sensor.as_deref())?;

@@ -3,7 +3,7 @@
 
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
-use lumiduct_core::plan::{Estimator, Request};
+use lumiduct_core::plan::{Estimator, Polarisation, Request};
 use lumiduct_core::scene::{Scene, SensorId, Source};
 use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible};
 use lumiduct_input::Job;
@@ -25,6 +25,7 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     expect_light(job, &mut problems);
     expect_visible_sources(job, &mut problems);
     expect_passages(job, &mut problems);
+    expect_polarisation(job, &mut problems);
     expect_wavelengths(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
@@ -117,6 +118,22 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
                 "use `forward`, `mix`, `mis` or `auto`, or give the source an area and a cone of directions",
             );
         }
+    }
+}
+
+/// Refuses estimators that join paths of both directions where polarisation is followed.
+fn expect_polarisation(job: &Job, problems: &mut Problems) {
+    if job.scene.polarisation == Polarisation::Ignored {
+        return;
+    }
+    for (key, request) in requests(job) {
+        if !is_asked(request, |one| !one.follows_polarisation()) {
+            continue;
+        }
+        let message = format!("`{}` cannot follow polarisation", request.name());
+        problems
+            .error(&key, message)
+            .hint("use `forward`, `backward` or `auto`, or leave out `run.polarisation`");
     }
 }
 

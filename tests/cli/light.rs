@@ -208,3 +208,24 @@ paths = 200_000
     );
     assert!(said.contains("sppm cannot count first passages"), "{said}");
 }
+
+#[test]
+fn estimators_that_join_paths_refuse_to_follow_polarisation() {
+    let place = Place::new();
+    let followed = "-D run.polarisation=\"followed\"";
+    for estimator in ["mix", "gather", "mis"] {
+        let said = place.bad(2, &format!("run rod.toml --estimator {estimator} {followed}"));
+        assert!(said.contains(&format!("`{estimator}` cannot follow polarisation")), "{said}");
+        assert!(said.contains("use `forward`, `backward` or `auto`"), "{said}");
+    }
+    let said = place
+        .bad(2, &format!("compare rod.toml --estimators forward,backward --time 1s {followed}"));
+    assert!(said.contains("methods are compared without polarisation"), "{said}");
+    // A pilot tries only those that can.
+    place.good(&format!("run rod.toml {followed} --paths 20k -o out"));
+    let report = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(report.contains("polarisation is followed"), "{report}");
+    assert!(!report.contains("treated as unpolarised"), "{report}");
+    let summary = fs::read_to_string(place.path("out/summary.json")).unwrap();
+    assert!(summary.contains("\"polarisation\": \"followed\""), "{summary}");
+}

@@ -16,7 +16,7 @@ mod run;
 mod scope;
 mod table;
 
-use crate::page::{Contents, Elsewhere, Waiting};
+use crate::page::{Contents, Elsewhere, Unchecked};
 use crate::results::Results;
 use crate::run::{Finding, Row};
 use crate::scope::Scope;
@@ -115,8 +115,8 @@ fn all_rows() -> (Vec<Row>, Digest) {
     (rows, digest)
 }
 
-fn waiting() -> Waiting {
-    toml::from_str(include_str!("waiting.toml")).expect("the list beside this file is valid")
+fn unchecked() -> Unchecked {
+    toml::from_str(include_str!("unchecked.toml")).expect("the list beside this file is valid")
 }
 
 /// Asserts that all values of a family are met.
@@ -213,10 +213,10 @@ fn no_value_of_the_reference_is_forgotten() {
         }
     }
     formulas::computed().iter().for_each(|value| add(value.case, &value.name));
-    for elsewhere in &waiting().elsewhere {
+    for elsewhere in &unchecked().elsewhere {
         elsewhere.values.keys().for_each(|name| add(&elsewhere.case, name));
     }
-    for reason in waiting().all() {
+    for reason in unchecked().formula {
         reason.values.iter().for_each(|name| add(&reason.case, name));
     }
     assert_eq!(names.len(), REFERENCE_VALUES);
@@ -224,7 +224,7 @@ fn no_value_of_the_reference_is_forgotten() {
 
 #[test]
 fn tests_that_are_named_are_there_and_hold_the_values() {
-    for Elsewhere { file, test, values, .. } in waiting().elsewhere {
+    for Elsewhere { file, test, values, .. } in unchecked().elsewhere {
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&file));
         let text = text.unwrap_or_else(|error| panic!("{file}: {error}"));
         let (before, body) =
@@ -265,9 +265,14 @@ fn the_page_of_results_is_current() {
         Scope::Part { .. } => results.replace(&rows, &all_findings()),
         Scope::Page => results = Results::of(&all_findings()),
     }
-    let (computed, waiting) = (formulas::computed(), waiting());
-    let contents =
-        Contents { rows: &rows, results: &results, computed: &computed, waiting: &waiting, inputs };
+    let (computed, unchecked) = (formulas::computed(), unchecked());
+    let contents = Contents {
+        rows: &rows,
+        results: &results,
+        computed: &computed,
+        unchecked: &unchecked,
+        inputs,
+    };
     let page = page::page(&contents);
     if std::env::var_os("UPDATE_GOLDEN").is_some() && Scope::demanded() == Scope::Page {
         std::fs::write(&path, &page).unwrap();

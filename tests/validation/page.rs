@@ -12,20 +12,11 @@ use std::fmt::Write;
 /// Values that are not checked here, or not at all.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Waiting {
+pub(crate) struct Unchecked {
     /// Values that other tests check.
     pub(crate) elsewhere: Vec<Elsewhere>,
     /// Values that nothing in the program gives, nor should.
     pub(crate) formula: Vec<Reason>,
-    /// Values of features not yet built.
-    pub(crate) waiting: Vec<Reason>,
-}
-
-impl Waiting {
-    /// All that no test checks.
-    pub(crate) fn all(&self) -> impl Iterator<Item = &Reason> {
-        self.formula.iter().chain(&self.waiting)
-    }
 }
 
 /// Values of a case that a unit test checks.
@@ -63,29 +54,27 @@ pub(crate) struct Contents<'a> {
     /// What came out of them.
     pub(crate) results: &'a Results,
     pub(crate) computed: &'a [Computed],
-    pub(crate) waiting: &'a Waiting,
+    pub(crate) unchecked: &'a Unchecked,
     /// Digest of tables and scenes.
     pub(crate) inputs: Digest,
 }
 
 /// The whole page.
 pub(crate) fn page(contents: &Contents<'_>) -> String {
-    let Contents { rows, results, computed, waiting, .. } = *contents;
+    let Contents { rows, results, computed, unchecked, .. } = *contents;
     let mut text = INTRODUCTION.to_owned();
     summary(&mut text, contents);
     traced(&mut text, rows, results);
     coarse(&mut text, rows, results);
     formulas(&mut text, computed);
-    elsewhere(&mut text, &waiting.elsewhere);
+    elsewhere(&mut text, &unchecked.elsewhere);
     let formulas = "Formulas and contrasts";
     reasons(
         &mut text,
         formulas,
         "The program does not compute these; they are not tested.",
-        &waiting.formula,
+        &unchecked.formula,
     );
-    let not_yet = "Not checked yet";
-    reasons(&mut text, not_yet, "The required features do not exist yet.", &waiting.waiting);
     text.push_str(BESIDE);
     text
 }
@@ -101,6 +90,7 @@ These tests compare features without reference cases with published values and l
 | reliefs | a flank under 45 deg turns light to 1e-12; volumes; flux on every face of a furnace; grooves against the same profile as a sweep; no leak in a million segments | `tests/relief`, `tests/agreement/reliefs.rs` |
 | rough surfaces: ggx, abg, harvey | chi-square of samples against the distribution function, reciprocity, no light created, total integrated scatter in closed form; all estimators | `src/optics`, `tests/agreement/finishes.rs` |
 | daylight | horizontal illuminance of sun and skies, against integrals of the standard sky | `src/optics`, `tests/agreement/daylight.rs` |
+| polarisation | complex fields traced by hand through metal mirrors in skew planes and through a round rod; gather paths against photons | `tests/polarisation.rs` |
 | meshes from CAD | the exact sweep of the same rod, by angle of the mesh | `docs/cad.md` |
 ";
 
@@ -123,15 +113,13 @@ and 0.09 % (X), and checks that this page matches the scenes, tables and numeric
 ";
 
 fn summary(text: &mut String, contents: &Contents<'_>) {
-    let Contents { rows, results, computed, waiting, inputs } = contents;
-    let count =
-        |reasons: &[Reason]| reasons.iter().map(|reason| reason.values.len()).sum::<usize>();
-    let elsewhere: usize = waiting.elsewhere.iter().map(|one| one.values.len()).sum();
-    let (formulas, waiting) = (count(&waiting.formula), count(&waiting.waiting));
+    let Contents { rows, results, computed, unchecked, inputs } = contents;
+    let elsewhere: usize = unchecked.elsewhere.iter().map(|one| one.values.len()).sum();
+    let formulas: usize = unchecked.formula.iter().map(|reason| reason.values.len()).sum();
     let (traced, computed) = (rows.len(), computed.len());
     let line = format!(
         "\n{traced} values are traced, {computed} are computed by a function, {elsewhere} are checked by a test beside the code, \
-         {formulas} are formulas or contrasts, {waiting} are not checked yet. Numerics {NUMERICS}; digest of tables and scenes {inputs}.\n\n{}\n",
+         {formulas} are formulas or contrasts. Numerics {NUMERICS}; digest of tables and scenes {inputs}.\n\n{}\n",
         results.deviations,
     );
     text.push_str(&line);

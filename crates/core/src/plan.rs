@@ -3,6 +3,10 @@
 //! Scene files, the command line, checkpoints and reports share these types, their names in files
 //! and their schema; the documentation of keys and values becomes the manual.
 
+mod polarisation;
+
+pub use polarisation::Polarisation;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;

@@ -4,7 +4,7 @@ use crate::{Inventory, MeasuredLuminaire, MeasuredRays, Recipe, SceneDrawing};
 use glam::DVec3;
 use lumiduct_base::number::{format_exact, format_percent};
 use lumiduct_core::measure::{self, Measures, Verdict};
-use lumiduct_core::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
+use lumiduct_core::plan::{Check, GatherPlan, Polarisation, Request, Schedule, StopRules, Target};
 use lumiduct_core::transport::Leak;
 use lumiduct_input::Project;
 use serde::{Deserialize, Serialize};
@@ -80,6 +80,9 @@ pub struct RunFacts {
     pub target: Option<TargetFacts>,
     /// Bounce limit.
     pub bounce_limit: u32,
+    /// What becomes of polarisation; left out where it is ignored.
+    #[serde(default, skip_serializing_if = "Polarisation::is_ignored")]
+    pub polarisation: Polarisation,
     /// Places of leaks in the user's coordinates, mm.
     pub leaks: Vec<DVec3>,
 }

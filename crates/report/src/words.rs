@@ -7,7 +7,7 @@ use lumiduct_core::measure::{
     Action, CheckOutcome, ClassExtent, LostPaths, Measure, PathClass, PathStep, SensorMap,
     Statistic, Status, strongest,
 };
-use lumiduct_core::plan::Estimator;
+use lumiduct_core::plan::{Estimator, Polarisation};
 use lumiduct_core::transport::{AccountEntry, EstimatorChoice, Objection, Trial};
 
 /// A bias is shown from this share of the standard error on, 1.
@@ -270,6 +270,22 @@ pub(crate) fn balance_lines(report: &Report) -> Vec<(&str, String, String)> {
         .collect()
 }
 
+/// What became of the polarisation of light.
+fn polarisation(polarisation: Polarisation) -> &'static str {
+    match polarisation {
+        Polarisation::Ignored => {
+            "light is treated as unpolarised at every interface, which makes transmission slightly too low: by \
+             0.7 % for a straight \
+             rod with two polished ends under a Lambertian source, by 3.6 % for a plate of index 1.49 at 75° (examples, not \
+             this scene; docs/theory.md, eq. 2)"
+        }
+        Polarisation::Followed => {
+            "polarisation is followed from unpolarised sources through smooth interfaces, metals, mirrors and layers; all \
+             that scatters, prism film and mixtures of finishes depolarise (docs/theory.md, eq. 38)"
+        }
+    }
+}
+
 /// The facts of a run, a line each.
 pub(crate) fn run_lines(report: &Report) -> Vec<String> {
     let (run, measures) = (&report.run, &report.measures);
@@ -282,11 +298,7 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
         ),
         format!("requested: {}; ended because {}", run.asked, run.stopped),
         format!("bounce limit {}", run.bounce_limit),
-        "light is treated as unpolarised at every interface, which makes transmission slightly too low: by \
-            0.7 % for a straight \
-         rod with two polished ends under a Lambertian source, by 3.6 % for a plate of index 1.49 at 75° (examples, not \
-         this scene; docs/theory.md, eq. 2)"
-            .to_owned(),
+        polarisation(run.polarisation).to_owned(),
     ];
     if !run.gather.is_empty() {
         lines.push(format!("settings of gathering: {}", run.gather));

@@ -20,6 +20,12 @@ impl Polarised {
     pub fn unpolarised(self) -> f64 {
         0.5 * (self.s + self.p)
     }
+
+    /// Reflectance of light with this share of s, 1.
+    #[inline]
+    pub(crate) fn of(self, s_share: f64) -> f64 {
+        s_share * self.s + (1.0 - s_share) * self.p
+    }
 }
 
 /// Cosine of the refracted angle by Snell's law, or `None` under total internal reflection.

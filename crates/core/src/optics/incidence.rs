@@ -20,9 +20,21 @@ pub struct Incidence {
     pub wavelength: f64,
     /// Unit direction of the grain of a finish along the face; zero for finishes without grain.
     pub grain: DVec3,
+    /// Share of the light whose electric field is perpendicular to the plane of incidence (s), 0..=1;
+    /// [`UNPOLARISED`](Self::UNPOLARISED) where polarisation is ignored.
+    pub s_share: f64,
 }
 
 impl Incidence {
+    /// [`Incidence::s_share`] of unpolarised light, 1.
+    pub const UNPOLARISED: f64 = 0.5;
+
+    /// The same light without its polarisation.
+    #[inline]
+    pub(crate) fn unpolarised(&self) -> Self {
+        Self { s_share: Self::UNPOLARISED, ..*self }
+    }
+
     /// Cosine of the angle of incidence, in 0..=1.
     #[inline]
     pub(crate) fn cos(&self) -> f64 {

@@ -16,6 +16,7 @@ mod haze;
 mod incidence;
 mod medium;
 mod sky;
+mod stokes;
 pub mod sun;
 mod volume;
 
@@ -42,4 +43,5 @@ pub use medium::Medium;
 pub(crate) use sky::CIE_TYPES;
 pub(crate) use sky::SkyBound;
 pub use sky::SkyModel;
+pub use stokes::{FaceMueller, Stokes};
 pub use volume::VolumeScattering;

@@ -1,6 +1,7 @@
 //! Putting a scene together: tables first, then the whole.
 
 use crate::optics::{Finish, Medium};
+use crate::plan::Polarisation;
 use crate::scene::crossing::convex::{Convex, ConvexSolids};
 use crate::scene::mesh::Mesh;
 use crate::scene::pattern::Pattern;
@@ -48,6 +49,7 @@ impl Builder {
             origin,
             bounds: Aabb::EMPTY,
             unit,
+            polarisation: Polarisation::Ignored,
             media: vec![surroundings],
             surroundings: MediumId::new(0),
             finishes: Vec::new(),
@@ -208,6 +210,11 @@ impl Builder {
     /// Sets the medium outside every solid; the default is the one given to [`Builder::new`].
     pub fn set_surroundings(&mut self, medium: MediumId) {
         self.scene.surroundings = medium;
+    }
+
+    /// Sets what becomes of the polarisation of light; by default it is ignored.
+    pub fn set_polarisation(&mut self, polarisation: Polarisation) {
+        self.scene.polarisation = polarisation;
     }
 
     /// Adds a source.

@@ -1,6 +1,7 @@
 //! Everything a path can meet, and the media and finishes that it is made of.
 
 use crate::optics::{Finish, Medium};
+use crate::plan::Polarisation;
 use crate::scene::crossing::convex::Convex;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::Relief;
@@ -49,6 +50,8 @@ pub struct Scene {
     pub bounds: Aabb,
     /// Whether fluxes are luminous or radiant.
     pub unit: FluxUnit,
+    /// What becomes of the polarisation of light on its way.
+    pub polarisation: Polarisation,
     /// All media; the surroundings are [`Scene::surroundings`].
     pub media: Vec<Medium>,
     /// The medium outside every solid.

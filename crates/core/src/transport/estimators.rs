@@ -5,11 +5,10 @@
 //! Callers need not know windows, weights or records, which differ between estimators.
 
 use crate::plan::Estimator;
-use crate::scene::{RowReach, Scene, Sensor, SensorId, Source};
+use crate::scene::{RowReach, Scene, SensorId};
 use crate::transport::backward::estimator as backward;
 use crate::transport::backward::mix::{self, Mixing};
 use crate::transport::backward::paths::Backward;
-use crate::transport::connect::vertex::scatters;
 use crate::transport::connect::weights::Sharing;
 use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
@@ -20,7 +19,6 @@ use crate::transport::gather::{self, GatherSettings};
 use crate::transport::tally::{Counts, Series, Stage, merged};
 use crate::transport::task::Task;
 use crate::transport::trial::{Trials, Tried};
-use crate::transport::walk::emitters::invisible;
 use crate::transport::{Event, Layout, Observer, Path, ROULETTE_BELOW, Readings, forward};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -357,43 +355,5 @@ pub(crate) fn trial(estimator: Estimator, trials: &Trials<'_>) -> Option<Vec<Tri
         Estimator::Gather => gather::trial(trials),
         // A pilot does not choose it.
         Estimator::Mis => Some(Vec::new()),
-    }
-}
-
-impl Estimator {
-    /// Estimators that a pilot tries, in the order of its report.
-    pub const TRIED: [Self; 4] = [Self::Forward, Self::Backward, Self::Mix, Self::Gather];
-
-    /// Whether gather paths must meet a source for its light to count.
-    pub fn must_meet_sources(self) -> bool {
-        match self {
-            Self::Forward | Self::Mix | Self::Mis => false,
-            Self::Backward | Self::Gather => true,
-        }
-    }
-
-    /// Whether photons meet records. Which sensors a photon has passed is then unknown, and its wavelength is not that of the record.
-    pub fn has_records(self) -> bool {
-        match self {
-            Self::Forward | Self::Backward | Self::Mix => false,
-            Self::Gather | Self::Mis => true,
-        }
-    }
-
-    /// Whether a trial in a scene could find more than photons alone do.
-    pub(crate) fn is_worth_a_trial(self, scene: &Scene) -> bool {
-        let can_meet = |source: &Source| invisible(source, scene).is_none();
-        match self {
-            Self::Forward => true,
-            Self::Mix => scene.sources.iter().any(can_meet) || scatters(scene),
-            Self::Backward => scene.sources.iter().all(can_meet),
-            Self::Gather => !scene.is_spectral() && scene.sources.iter().all(can_meet),
-            Self::Mis => false,
-        }
-    }
-
-    /// Whether it can estimate a sensor.
-    pub(crate) fn can_estimate(self, sensor: &Sensor) -> bool {
-        !self.has_records() || !sensor.counts_first_passage()
     }
 }

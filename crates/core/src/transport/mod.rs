@@ -2,9 +2,10 @@
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
 //! [`Findings`]. From the bottom up: `tally`, `stop`, `walk`; `photon_pilot`; `batches`; `task`, `trial` and `estimate`,
-//! what every estimator gets and gives; `window`; `connect`; `forward`, `backward` and `gather`; `estimators`, the
+//! what every estimator gets and gives; `window`; `connect`; `abilities`; `forward`, `backward` and `gather`; `estimators`, the
 //! one seam in front of them; `choose`, `run`.
 
+mod abilities;
 mod backward;
 mod batches;
 mod choose;

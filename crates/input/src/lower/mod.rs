@@ -77,7 +77,8 @@ pub(crate) fn lower(
     names::check_title(&spec.title, problems);
     names::check(places, problems);
     let air = Medium::new(crate::spec::AIR, 1.0, 0.0);
-    let builder = Builder::new(bodies::origin(spec), air, flux::unit(spec));
+    let mut builder = Builder::new(bodies::origin(spec), air, flux::unit(spec));
+    builder.set_polarisation(spec.run.polarisation);
     let mut context = Context::new(spec, places, scope, builder, problems);
     context.lower_media();
     context.lower_finishes();

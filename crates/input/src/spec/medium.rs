@@ -7,7 +7,7 @@ use crate::spec::spectrum::{AbsorptionSpec, IndexSpec};
 
 /// A medium in which light travels. `air` is predefined with index 1 and no absorption, and so are the media that `lumiduct library` lists, without
 /// absorption except `pure_water`; a table of the same name replaces them. What an interface of two media
-/// transmits follows from their indices, for unpolarised light: see the finish `smooth`. Index and absorption may depend on the
+/// transmits follows from their indices: see the finish `smooth`. Index and absorption may depend on the
 /// wavelength; where sources have no spectrum, light has 555 nm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MediumSpec {

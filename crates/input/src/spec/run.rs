@@ -1,6 +1,6 @@
 //! How long to compute, and what is expected of the results.
 
-use lumiduct_core::plan::{GatherPlan, Request, Target};
+use lumiduct_core::plan::{GatherPlan, Polarisation, Request, Target};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +41,9 @@ pub struct RunSpec {
     #[serde(default = "bounce_limit")]
     #[schemars(range(min = 1, max = 10_000_000))]
     pub bounce_limit: u32,
+    /// What becomes of the polarisation of light.
+    #[serde(default)]
+    pub polarisation: Polarisation,
 }
 
 impl Default for RunSpec {
@@ -55,6 +58,7 @@ impl Default for RunSpec {
             estimator: Request::default(),
             gather: GatherPlan::default(),
             bounce_limit: bounce_limit(),
+            polarisation: Polarisation::default(),
         }
     }
 }

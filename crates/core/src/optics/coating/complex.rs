@@ -27,6 +27,10 @@ impl Complex {
         Self { re: factor * self.re, im: factor * self.im }
     }
 
+    pub(super) fn conjugate(self) -> Self {
+        Self { re: self.re, im: -self.im }
+    }
+
     /// Square of the modulus.
     pub(super) fn norm_squared(self) -> f64 {
         self.re * self.re + self.im * self.im

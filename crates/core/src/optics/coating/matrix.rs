@@ -30,8 +30,9 @@ pub(super) struct PolarisedShares {
 }
 
 impl PolarisedShares {
-    pub(super) fn unpolarised(self) -> Shares {
-        self.s.plus(self.p).scaled(0.5)
+    /// Of light with this share of s, 1.
+    pub(super) fn of(self, s_share: f64) -> Shares {
+        self.s.scaled(s_share).plus(self.p.scaled(1.0 - s_share))
     }
 }
 
@@ -42,14 +43,35 @@ pub(super) fn shares(
     cos: f64,
     [from, to]: [f64; 2],
 ) -> PolarisedShares {
+    let StackFields { s, p, beyond } = fields(films, cos, (from, Complex::real(to)));
+    let normal = from * cos;
+    PolarisedShares {
+        s: s.shares([normal, 1.0], beyond.re),
+        p: p.shares([from * from, normal], to * to * beyond.re),
+    }
+}
+
+/// Fields before films of both polarisations, and q of the medium behind.
+pub(super) struct StackFields {
+    pub(super) s: WaveFields,
+    pub(super) p: WaveFields,
+    pub(super) beyond: Complex,
+}
+
+/// The fields before films in front of a medium, which may absorb.
+pub(super) fn fields(
+    films: impl DoubleEndedIterator<Item = Film>,
+    cos: f64,
+    (from, to): (f64, Complex),
+) -> StackFields {
     let normal = from * cos;
     // q² from N², rather than through β², so that nothing cancels between equal indices.
     let normal_squared =
         |square: Complex| square - Complex::real(from * from) + Complex::real(normal * normal);
-    let beyond = normal_squared(Complex::real(to * to)).decaying_root();
+    let beyond = normal_squared(to * to).decaying_root();
     // Fields in the last medium: 1 and η, for p times q.
     let mut s = WaveFields::new(Complex::real(1.0), beyond);
-    let mut p = WaveFields::new(beyond, Complex::real(to * to));
+    let mut p = WaveFields::new(beyond, to * to);
     for Film { index, thickness } in films.rev() {
         let square = index * index;
         let own = normal_squared(square);
@@ -60,10 +82,7 @@ pub(super) fn shares(
         s = s.before(&phase, sine, over);
         p = p.before(&phase, over * square.inverse(), times);
     }
-    PolarisedShares {
-        s: s.shares([normal, 1.0], beyond.re),
-        p: p.shares([from * from, normal], to * to * beyond.re),
-    }
+    StackFields { s, p, beyond }
 }
 
 /// The phase δ of a film; both functions are divided by exp(-Im δ), or thick metal would overflow.
@@ -98,7 +117,7 @@ impl FilmPhase {
 }
 
 /// Tangential fields B and C of one polarisation, up to a common factor.
-struct WaveFields {
+pub(super) struct WaveFields {
     electric: Complex,
     magnetic: Complex,
     /// Square of the factor between these fields and those of a film before which they would be 1 and η, 1.
@@ -127,19 +146,21 @@ impl WaveFields {
         }
     }
 
+    /// Difference and sum of the fields before a medium of admittance `a/b`, whose ratio is the reflected amplitude.
+    pub(super) fn differences(&self, [a, b]: [f64; 2]) -> [Complex; 2] {
+        let (electric, magnetic) = (self.electric.scaled(a), self.magnetic.scaled(b));
+        [electric - magnetic, electric + magnetic]
+    }
+
     /// Shares before a medium of admittance `a/b`; `passing` is the real part of the last admittance, times the same factor
     /// as the first fields, 0 under total reflection.
-    fn shares(&self, [a, b]: [f64; 2], passing: f64) -> Shares {
-        let (electric, magnetic) = (self.electric.scaled(a), self.magnetic.scaled(b));
-        let sum = (electric + magnetic).norm_squared();
+    pub(super) fn shares(&self, [a, b]: [f64; 2], passing: f64) -> Shares {
+        let [less, sum] = self.differences([a, b]).map(Complex::norm_squared);
         // Along the face.
         if sum == 0.0 {
             return Shares { reflected: 1.0, transmitted: 0.0 };
         }
-        Shares {
-            reflected: (electric - magnetic).norm_squared() / sum,
-            transmitted: 4.0 * a * b * passing * self.scale / sum,
-        }
+        Shares { reflected: less / sum, transmitted: 4.0 * a * b * passing * self.scale / sum }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::optics::coating::complex::Complex;
 use crate::optics::coating::matrix::{self, Film};
-use crate::optics::{Incidence, IndexLaw, Shares, fresnel};
+use crate::optics::coating::mueller::mueller;
+use crate::optics::{FaceMueller, Incidence, IndexLaw, Shares, Side, fresnel};
 use std::f64::consts::TAU;
 
 /// A thin layer.
@@ -53,7 +54,15 @@ impl LayerStack {
         (!self.is_symmetric).then(|| Self { layers: turned(), ..self.clone() })
     }
 
-    /// Shares of unpolarised light that arrives, 1.
+    /// Its action on polarised light that leaves to a side.
+    pub(crate) fn mueller(&self, incidence: &Incidence, side: Side) -> FaceMueller {
+        let wavelength = self.wavelength.unwrap_or(incidence.wavelength);
+        let films = self.layers.iter().map(|layer| layer.film(wavelength));
+        let Incidence { index_from, index_to, .. } = *incidence;
+        mueller(films, incidence.cos(), (index_from, Complex::real(index_to)), side)
+    }
+
+    /// Shares of light that arrives, 1.
     pub fn shares(&self, incidence: &Incidence) -> Shares {
         self.shares_of(self.layers.iter(), incidence)
     }
@@ -75,10 +84,10 @@ impl LayerStack {
         layers: impl DoubleEndedIterator<Item = &'a ThinLayer>,
         incidence: &Incidence,
     ) -> Shares {
-        let Incidence { index_from, index_to, .. } = *incidence;
+        let Incidence { index_from, index_to, s_share, .. } = *incidence;
         let (cos, wavelength) = (incidence.cos(), self.wavelength.unwrap_or(incidence.wavelength));
         let films = layers.map(|layer| layer.film(wavelength));
-        let shares = matrix::shares(films, cos, [index_from, index_to]).unpolarised();
+        let shares = matrix::shares(films, cos, [index_from, index_to]).of(s_share);
         debug_assert!(!shares.reflected.is_nan(), "{self:?} at {wavelength} nm");
         // Rounding makes no light and, in clear stacks, loses none.
         let reflected = shares.reflected.min(1.0);
@@ -105,7 +114,8 @@ mod tests {
     fn incidence(angle: f64, [index_from, index_to]: [f64; 2]) -> Incidence {
         let (dir, normal) = (DVec3::new(angle.sin(), 0.0, -angle.cos()), DVec3::Z);
         let (wavelength, grain) = (REFERENCE_WAVELENGTH, DVec3::ZERO);
-        Incidence { dir, normal, index_from, index_to, wavelength, grain }
+        let s_share = Incidence::UNPOLARISED;
+        Incidence { dir, normal, index_from, index_to, wavelength, grain, s_share }
     }
 
     fn layer(index: f64, extinction: f64, thickness: f64) -> ThinLayer {

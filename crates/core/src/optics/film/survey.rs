@@ -65,5 +65,6 @@ pub fn along_prisms(angle: f64, azimuth: f64, index: f64) -> Incidence {
         index_to: index,
         wavelength: REFERENCE_WAVELENGTH,
         grain: DVec3::Y,
+        s_share: Incidence::UNPOLARISED,
     }
 }

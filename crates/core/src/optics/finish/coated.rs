@@ -3,7 +3,7 @@
 
 use crate::optics::finish::model::FinishModel;
 use crate::optics::finish::smooth::SmoothInterface;
-use crate::optics::{AngleTable, Incidence, Scattered, Shares, Side, fresnel};
+use crate::optics::{AngleTable, FaceMueller, Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Numbers, Sampler};
 
 pub(crate) struct Coated<'a> {
@@ -38,6 +38,10 @@ impl FinishModel for Coated<'_> {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         self.scatter(incidence, sampler).map(Scattered::normalised)
+    }
+
+    fn mueller(&self, _incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(FaceMueller::ideal(side))
     }
 
     fn only_mirrors(&self, incidence: &Incidence) -> bool {

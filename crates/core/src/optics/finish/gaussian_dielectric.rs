@@ -1,4 +1,4 @@
-//! A rough dielectric: shares by Fresnel, Gaussian scatter about the mirrored and the refracted direction.
+//! A rough dielectric: shares by Fresnel for unpolarised light, Gaussian scatter about the mirrored and the refracted direction.
 
 use crate::optics::finish::model::FinishModel;
 use crate::optics::finish::smooth::SmoothInterface;
@@ -12,7 +12,7 @@ pub(crate) struct GaussianDielectric<'a> {
 
 impl FinishModel for GaussianDielectric<'_> {
     fn shares(&self, incidence: &Incidence) -> Shares {
-        SmoothInterface.shares(incidence)
+        SmoothInterface.shares(&incidence.unpolarised())
     }
 
     fn scatter(
@@ -20,7 +20,7 @@ impl FinishModel for GaussianDielectric<'_> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        let Scattered { dir, side, .. } = SmoothInterface::send(incidence, sampler);
+        let Scattered { dir, side, .. } = SmoothInterface::send(&incidence.unpolarised(), sampler);
         let dir = self.lobe.sample(dir.normalize(), incidence.leaving_normal(side), sampler);
         Some(Scattered::diffuse(dir, 1.0, side))
     }
@@ -30,7 +30,7 @@ impl FinishModel for GaussianDielectric<'_> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        let before = self.lobe.before(incidence, sampler)?;
+        let before = self.lobe.before(&incidence.unpolarised(), sampler)?;
         Some(before.continued(SmoothInterface::send(&before.incidence, sampler)))
     }
 
@@ -40,7 +40,7 @@ impl FinishModel for GaussianDielectric<'_> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        let before = self.lobe.before(incidence, sampler)?;
+        let before = self.lobe.before(&incidence.unpolarised(), sampler)?;
         SmoothInterface
             .scatter_toward(side, &before.incidence, sampler)
             .map(|out| before.continued(out))

@@ -199,7 +199,7 @@ impl Haze {
         let undisturbed = match self.base {
             HazeBase::Interface => {
                 let rest = 1.0 - scattered.reflected - scattered.transmitted;
-                SmoothInterface.shares(incidence).scaled(rest)
+                SmoothInterface.shares(&incidence.unpolarised()).scaled(rest)
             }
             HazeBase::Sheet { reflectance, transmittance, .. } => Shares {
                 reflected: reflectance - scattered.reflected,

@@ -1,7 +1,8 @@
-//! A bare metal of complex index n + ik, by Fresnel for unpolarised light.
+//! A bare metal of complex index n + ik, by Fresnel.
 
+use crate::optics::coating::bare_face;
 use crate::optics::finish::model::FinishModel;
-use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
+use crate::optics::{FaceMueller, Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Numbers, Sampler};
 
 pub(crate) struct Metal {
@@ -11,8 +12,8 @@ pub(crate) struct Metal {
 
 impl FinishModel for Metal {
     fn shares(&self, incidence: &Incidence) -> Shares {
-        let reflected =
-            fresnel::conductor(incidence.cos(), incidence.index_from, self.n, self.k).unpolarised();
+        let Incidence { index_from, s_share, .. } = *incidence;
+        let reflected = fresnel::conductor(incidence.cos(), index_from, self.n, self.k).of(s_share);
         Shares { reflected, transmitted: 0.0 }
     }
 
@@ -28,6 +29,10 @@ impl FinishModel for Metal {
 
     fn only_mirrors(&self, _incidence: &Incidence) -> bool {
         true
+    }
+
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(bare_face(incidence, [self.n, self.k], side))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Each photon meets one of several finishes, chosen by weight.
+//! Each photon meets one of several finishes, chosen by weight. It is depolarised, since which of them sent it on is not known.
 //!
 //! This module does not know which finishes there are: it asks the parts what it is asked.
 
@@ -44,6 +44,7 @@ impl<'a, F> Mixture<'a, F> {
 
 impl<F: FinishModel> FinishModel for Mixture<'_, F> {
     fn shares(&self, incidence: &Incidence) -> Shares {
+        let incidence = &incidence.unpolarised();
         self.mean(|part| part.shares(incidence))
     }
 
@@ -52,7 +53,7 @@ impl<F: FinishModel> FinishModel for Mixture<'_, F> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        self.pick(sampler).scatter(incidence, sampler)
+        self.pick(sampler).scatter(&incidence.unpolarised(), sampler)
     }
 
     fn scatter_radiance(
@@ -60,7 +61,7 @@ impl<F: FinishModel> FinishModel for Mixture<'_, F> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        self.pick(sampler).scatter_radiance(incidence, sampler)
+        self.pick(sampler).scatter_radiance(&incidence.unpolarised(), sampler)
     }
 
     fn scatter_toward(
@@ -69,19 +70,21 @@ impl<F: FinishModel> FinishModel for Mixture<'_, F> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        self.pick(sampler).scatter_toward(side, incidence, sampler)
+        self.pick(sampler).scatter_toward(side, &incidence.unpolarised(), sampler)
     }
 
     fn albedo_about(&self, incidence: &Incidence) -> f64 {
-        let of = |(weight, part): &(f64, F)| weight * part.albedo_about(incidence);
+        let of = |(weight, part): &(f64, F)| weight * part.albedo_about(&incidence.unpolarised());
         self.parts.iter().map(of).sum::<f64>() / self.total()
     }
 
     fn chances(&self, incidence: &Incidence) -> Shares {
+        let incidence = &incidence.unpolarised();
         self.mean(|part| part.chances(incidence))
     }
 
     fn radiance_chances(&self, incidence: &Incidence) -> Shares {
+        let incidence = &incidence.unpolarised();
         let sum = self.parts.iter().fold(Shares::NONE, |sum, (weight, part)| {
             sum.plus(part.radiance_chances(incidence).scaled(*weight))
         });

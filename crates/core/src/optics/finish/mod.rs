@@ -26,7 +26,7 @@ mod specular;
 mod stack;
 mod tabulated;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 use crate::optics::bsdf::sheet::{MeasuredSheet, SheetSide};
 use crate::optics::finish::absorber::Absorber;
@@ -48,7 +48,8 @@ use crate::optics::finish::specular::Specular;
 use crate::optics::finish::stack::Stacked;
 use crate::optics::finish::tabulated::Tabulated;
 use crate::optics::{
-    AngleTable, FilmFace, Gaussian, Incidence, LayerStack, PrismFilm, Scattered, Shares, Side,
+    AngleTable, FaceMueller, FilmFace, Gaussian, Incidence, LayerStack, PrismFilm, Scattered,
+    Shares, Side,
 };
 use crate::rng::{Numbers, Sampler};
 use glam::DVec3;
@@ -57,7 +58,7 @@ use std::sync::Arc;
 /// A finish: what a face does to light.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Finish {
-    /// The smooth interface of the two media: Fresnel for unpolarised light, Snell, total reflection.
+    /// The smooth interface of the two media: Fresnel, Snell, total reflection.
     Smooth,
     /// A mirror, or a beam splitter, with the same shares at every angle; transmitted light goes straight on.
     Specular {
@@ -320,6 +321,10 @@ impl FinishModel for Finish {
 
     fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
         ask!(self, finish => finish.evaluate(incidence, out))
+    }
+
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        ask!(self, finish => finish.mueller(incidence, side))
     }
 
     fn width(&self) -> Option<f64> {

@@ -7,7 +7,7 @@
 //! Monte Carlo Methods for Light Transport Simulation, 1997, section 5.2, there for L). Each
 //! finish gives its factor at its `scatter_radiance`.
 
-use crate::optics::{Incidence, Scattered, Shares, Side};
+use crate::optics::{FaceMueller, Incidence, Scattered, Shares, Side};
 use crate::rng::{Numbers, Sampler};
 use glam::DVec3;
 
@@ -88,6 +88,13 @@ pub trait FinishModel {
     /// ΔA` (Jensen, Realistic Image Synthesis Using Photon Mapping, 2001, chapter 7).
     fn evaluate(&self, _incidence: &Incidence, _out: DVec3) -> f64 {
         0.0
+    }
+
+    /// The action on polarised light that leaves to a side in a discrete direction; `None` if it is depolarised. Only finishes that
+    /// answer may have shares that depend on the polarisation: what depolarises must act on all light alike, or gather paths,
+    /// for which this is reversed, would differ from photons.
+    fn mueller(&self, _incidence: &Incidence, _side: Side) -> Option<FaceMueller> {
+        None
     }
 
     /// Standard deviation of scatter about discrete directions, rad; `None` without any. For a

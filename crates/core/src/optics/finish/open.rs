@@ -1,7 +1,7 @@
 //! No interface: light goes straight on, whatever the indices are.
 
 use crate::optics::finish::model::FinishModel;
-use crate::optics::{Incidence, Scattered, Shares, Side};
+use crate::optics::{FaceMueller, Incidence, Scattered, Shares, Side};
 use crate::rng::{Numbers, Sampler};
 
 pub(crate) struct Open;
@@ -17,6 +17,10 @@ impl FinishModel for Open {
         _sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         Some(Scattered::specular(incidence.dir, 1.0, Side::Transmitted))
+    }
+
+    fn mueller(&self, _incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(FaceMueller::ideal(side))
     }
 
     fn passes_straight(&self) -> bool {

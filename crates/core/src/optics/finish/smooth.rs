@@ -1,10 +1,11 @@
-//! The smooth interface of two media: Fresnel for unpolarised light, Snell, total reflection.
+//! The smooth interface of two media: Fresnel, Snell, total reflection.
 //!
 //! Refraction conserves n² cos θ dω, and Fresnel's R and T are the same from both sides. So a
 //! gather path does what a photon does, without a factor.
 
+use crate::optics::coating::bare_face;
 use crate::optics::finish::model::FinishModel;
-use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
+use crate::optics::{FaceMueller, Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 
@@ -14,14 +15,14 @@ impl SmoothInterface {
     /// The photon; one draw, none under total reflection or between equal indices.
     #[inline]
     pub(crate) fn send(incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Scattered {
-        let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
+        let Incidence { dir, normal, index_from, index_to, s_share, .. } = *incidence;
         if index_from == index_to {
             return Scattered::specular(dir, 1.0, Side::Transmitted);
         }
         let cos_i = incidence.cos();
         if let Some(cos_t) = fresnel::cos_transmitted(cos_i, index_from, index_to) {
             let reflectance =
-                fresnel::dielectric_refracting(cos_i, cos_t, index_from, index_to).unpolarised();
+                fresnel::dielectric_refracting(cos_i, cos_t, index_from, index_to).of(s_share);
             if sampler.one(Dimension::Lobe) >= reflectance {
                 let eta = index_from / index_to;
                 let refracted = fresnel::refracted(dir, normal, cos_i, cos_t, eta);
@@ -63,11 +64,11 @@ impl SmoothInterface {
 impl FinishModel for SmoothInterface {
     /// Fresnel's shares; between equal indices all light passes, even along the face.
     fn shares(&self, incidence: &Incidence) -> Shares {
-        let Incidence { index_from, index_to, .. } = *incidence;
+        let Incidence { index_from, index_to, s_share, .. } = *incidence;
         let reflected = if index_from == index_to {
             0.0
         } else {
-            fresnel::dielectric(incidence.cos(), index_from, index_to).unpolarised()
+            fresnel::dielectric(incidence.cos(), index_from, index_to).of(s_share)
         };
         Shares { reflected, transmitted: 1.0 - reflected }
     }
@@ -103,6 +104,10 @@ impl FinishModel for SmoothInterface {
         _sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         Self::toward(side, incidence, self.shares(incidence).of(side))
+    }
+
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(bare_face(incidence, [incidence.index_to, 0.0], side))
     }
 }
 

@@ -6,7 +6,9 @@ use crate::optics::finish::gaussian_sheet::GaussianSheet;
 use crate::optics::finish::lambertian::Lambertian;
 use crate::optics::finish::model::{FinishModel, Spread};
 use crate::optics::finish::specular::Specular;
-use crate::optics::{Gaussian, Incidence, REFERENCE_WAVELENGTH, Scattered, Shares, Side};
+use crate::optics::{
+    FaceMueller, Gaussian, Incidence, REFERENCE_WAVELENGTH, Scattered, Shares, Side,
+};
 use crate::rng::{Numbers, Sampler};
 use glam::DVec3;
 
@@ -131,6 +133,10 @@ impl FinishModel for SpectralFinish {
 
     fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
         ask!(self, self.met(incidence), finish => finish.evaluate(incidence, out))
+    }
+
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        ask!(self, self.met(incidence), finish => finish.mueller(incidence, side))
     }
 
     fn width(&self) -> Option<f64> {

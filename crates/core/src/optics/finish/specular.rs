@@ -1,7 +1,7 @@
 //! A mirror, or a beam splitter, with the same shares at every angle; transmitted light goes straight on.
 
 use crate::optics::finish::model::FinishModel;
-use crate::optics::{Incidence, Scattered, Shares};
+use crate::optics::{FaceMueller, Incidence, Scattered, Shares, Side};
 use crate::rng::{Numbers, Sampler};
 
 pub(crate) struct Specular {
@@ -29,6 +29,10 @@ impl FinishModel for Specular {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         self.scatter(incidence, sampler).map(|out| out.unrefracted(incidence))
+    }
+
+    fn mueller(&self, _incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(FaceMueller::ideal(side))
     }
 
     fn only_mirrors(&self, incidence: &Incidence) -> bool {

@@ -6,7 +6,7 @@
 
 use crate::optics::finish::model::FinishModel;
 use crate::optics::finish::smooth::SmoothInterface;
-use crate::optics::{Incidence, LayerStack, Scattered, Shares, Side};
+use crate::optics::{FaceMueller, Incidence, LayerStack, Scattered, Shares, Side};
 use crate::rng::{Numbers, Sampler};
 
 pub(crate) struct Stacked<'a> {
@@ -37,6 +37,10 @@ impl FinishModel for Stacked<'_> {
 
     fn radiance_chances(&self, incidence: &Incidence) -> Shares {
         self.stack.shares_of_leaving(incidence)
+    }
+
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(self.stack.mueller(incidence, side))
     }
 
     fn only_mirrors(&self, incidence: &Incidence) -> bool {

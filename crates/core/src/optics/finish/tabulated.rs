@@ -1,7 +1,7 @@
 //! A mirror or a window with shares by the angle of incidence; transmitted light goes straight on.
 
 use crate::optics::finish::model::FinishModel;
-use crate::optics::{AngleTable, Incidence, Scattered, Shares};
+use crate::optics::{AngleTable, FaceMueller, Incidence, Scattered, Shares, Side};
 use crate::rng::{Numbers, Sampler};
 
 pub(crate) struct Tabulated<'a> {
@@ -25,6 +25,10 @@ impl FinishModel for Tabulated<'_> {
         let shares = self.shares(incidence);
         let side = shares.choose_side(sampler)?;
         Some(Scattered::specular(incidence.straight(side), shares.sum(), side))
+    }
+
+    fn mueller(&self, _incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        Some(FaceMueller::ideal(side))
     }
 
     fn only_mirrors(&self, incidence: &Incidence) -> bool {

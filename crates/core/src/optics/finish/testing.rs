@@ -93,6 +93,7 @@ pub(crate) fn incidence(angle: f64, [index_from, index_to]: [f64; 2]) -> Inciden
         index_to,
         wavelength: REFERENCE_WAVELENGTH,
         grain: DVec3::Y,
+        s_share: Incidence::UNPOLARISED,
     }
 }
 
@@ -380,6 +381,7 @@ pub(crate) fn assert_reciprocal(finish: &Finish, indices: [f64; 2]) {
                 index_to: other,
                 wavelength: REFERENCE_WAVELENGTH,
                 grain: DVec3::ZERO,
+                s_share: Incidence::UNPOLARISED,
             };
             let one = finish.evaluate(&there, out) / (index_out * index_out);
             let two = finish.evaluate(&back, -there.dir) / (index_in * index_in);

@@ -202,6 +202,7 @@ mod tests {
             index_to: 1.0,
             wavelength: REFERENCE_WAVELENGTH,
             grain: DVec3::ZERO,
+            s_share: Incidence::UNPOLARISED,
         };
         MetInterface {
             faces: Faces { own: finish, behind: finish },

@@ -288,6 +288,7 @@ fn arriving((scene, has_grain): (&Scene, bool), key: &PhotonKey, photon: &Passin
                     Surface::Patch(patch) if has_grain => patch.along(point),
                     Surface::Patch(_) | Surface::Triangle(..) => DVec3::ZERO,
                 },
+                s_share: Incidence::UNPOLARISED,
             };
             PhotonHit::Surface(SurfaceHit { surface, medium: from, point, incidence })
         }

@@ -4,7 +4,7 @@
 //! This module does not know what is counted. Photon paths and gather paths use the same loop: the observer of photon
 //! paths counts flux on sensors, that of gather paths finds their ends and the sources that they meet.
 
-use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
+use crate::optics::{Lobe, Scattered, Side, Stokes, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::{Hits, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::walk::event::{
@@ -12,7 +12,7 @@ use crate::transport::walk::event::{
 };
 use crate::transport::walk::jump::jump;
 use crate::transport::walk::path::Path;
-use crate::transport::walk::scatter::{scatter_gather_path, scatter_photon};
+use crate::transport::walk::scatter::{scatter_photon, send_gather_path};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
@@ -127,7 +127,7 @@ fn bounce<V: Observer>(
             path.depth += 1;
             let out = match V::CARRIES {
                 Carries::Flux => scatter_photon(scene, path, &interface, point, dir, sampler),
-                Carries::Radiance => scatter_gather_path(scene, path, &vertex, sampler),
+                Carries::Radiance => send_gather_path(scene, path, &vertex, sampler),
             };
             let Some(out) = out else {
                 observer.see(path, Event::Absorbed(&vertex))?;
@@ -148,7 +148,8 @@ fn bounce<V: Observer>(
         hits.cross(&mut path.inside);
         return ControlFlow::Continue(next);
     }
-    if observer.allows_jumps()
+    if path.stokes.is_none()
+        && observer.allows_jumps()
         && let Some(leg) = scene.plain_leg(interface.acting.prim)
     {
         return jump(scene, path, (leg, &vertex, &out), bounce_limit, observer);
@@ -172,6 +173,7 @@ fn collide<V: Observer>(
     let collision = Collision { point, dir, out: next.dir(), medium, scattering, throughput };
     observer.see(path, Event::Collide(&collision))?;
     path.depth += 1;
+    path.stokes = path.stokes.map(|_| Stokes::UNPOLARISED);
     path.on = StartSurfaces::default();
     path.ray = next;
     ControlFlow::Continue(path.ray)

@@ -282,6 +282,7 @@ mod tests {
             ray,
             throughput: 1.0,
             wavelength: REFERENCE_WAVELENGTH,
+            stokes: None,
             source: None,
             medium: scene.medium_in(inside),
             inside: inside.clone(),

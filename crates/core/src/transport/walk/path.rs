@@ -1,5 +1,7 @@
 //! The state of a path.
 
+use crate::optics::Stokes;
+use crate::plan::Polarisation;
 use crate::scene::{Arrival, Emitted, Inside, MediumId, Ray, Scene, SourceId, StartSurfaces};
 
 /// The state a path carries from one interface to the next.
@@ -11,6 +13,8 @@ pub struct Path {
     pub throughput: f64,
     /// Wavelength, nm.
     pub wavelength: f64,
+    /// Polarisation, if that is followed.
+    pub stokes: Option<Stokes>,
     /// Source of its light; unknown for a gather path.
     pub source: Option<SourceId>,
     /// The solids it is in.
@@ -31,6 +35,7 @@ impl Path {
             ray: emitted.ray,
             throughput: 1.0,
             wavelength: emitted.wavelength,
+            stokes: unpolarised(scene),
             source: Some(source),
             medium: scene.medium_in(&emitted.inside),
             inside: emitted.inside,
@@ -45,6 +50,7 @@ impl Path {
             ray: arrival.ray,
             throughput: 1.0,
             wavelength: arrival.wavelength,
+            stokes: unpolarised(scene),
             source: None,
             medium: scene.medium_in(&arrival.inside),
             inside: arrival.inside.clone(),
@@ -58,5 +64,13 @@ impl Path {
     pub fn etendue(&self, scene: &Scene, extent: f64) -> f64 {
         let index = scene.media[self.medium.index()].index(self.wavelength);
         index * index * extent
+    }
+}
+
+/// The polarisation at the start of a path: neither sources nor sensors prefer any.
+fn unpolarised(scene: &Scene) -> Option<Stokes> {
+    match scene.polarisation {
+        Polarisation::Ignored => None,
+        Polarisation::Followed => Some(Stokes::UNPOLARISED),
     }
 }

@@ -2,7 +2,9 @@
 //!
 //! It combines the finish, the normal and the indices; the physics is in `optics`.
 
-use crate::optics::{Faces, Finish, FinishModel, Incidence, Scattered, Side, scatter_at_faces};
+use crate::optics::{
+    Faces, Finish, FinishModel, Incidence, Lobe, Scattered, Side, Stokes, scatter_at_faces,
+};
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{FaceId, FinishId, Interface, MediumId, Patch, Scene, Surface};
@@ -16,7 +18,7 @@ static SMOOTH: Finish = Finish::Smooth;
 #[inline(always)]
 pub(super) fn scatter_photon(
     scene: &Scene,
-    path: &Path,
+    path: &mut Path,
     interface: &Interface<'_>,
     point: DVec3,
     dir: DVec3,
@@ -30,9 +32,10 @@ pub(super) fn scatter_photon(
     match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, point);
-            let grain = grain(finish, patch, point);
-            let incidence = Incidence { dir, normal, index_from, index_to, wavelength, grain };
-            finish.scatter(&incidence, sampler)
+            let (grain, s_share) = (grain(finish, patch, point), Incidence::UNPOLARISED);
+            let incidence =
+                Incidence { dir, normal, index_from, index_to, wavelength, grain, s_share };
+            send(finish, &incidence, &mut path.stokes, sampler)
         }
         Surface::Triangle(body, triangle) => {
             let facing = |outward: DVec3| match toward {
@@ -44,12 +47,50 @@ pub(super) fn scatter_photon(
             // An interpolated normal may face away from grazing light; then the facet's normal is
             // used.
             let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
-            let grain = DVec3::ZERO;
-            let incidence = Incidence { dir, normal, index_from, index_to, wavelength, grain };
-            let out = finish.scatter(&incidence, sampler)?;
+            let (grain, s_share) = (DVec3::ZERO, Incidence::UNPOLARISED);
+            let incidence =
+                Incidence { dir, normal, index_from, index_to, wavelength, grain, s_share };
+            let out = send(finish, &incidence, &mut path.stokes, sampler)?;
             Some(kept_on_its_side(out, facet))
         }
     }
+}
+
+/// Sends a photon on, with its polarisation if that is followed.
+#[inline(always)]
+fn send(
+    finish: &Finish,
+    incidence: &Incidence,
+    stokes: &mut Option<Stokes>,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Scattered> {
+    match stokes {
+        None => finish.scatter(incidence, sampler),
+        Some(stokes) => send_polarised(finish, incidence, stokes, sampler),
+    }
+}
+
+#[inline(never)]
+fn send_polarised(
+    finish: &Finish,
+    incidence: &Incidence,
+    stokes: &mut Stokes,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Scattered> {
+    let s_share = stokes.s_share(incidence.dir, incidence.normal);
+    let incidence = Incidence { s_share, ..*incidence };
+    let out = finish.scatter(&incidence, sampler)?;
+    *stokes = leaving(stokes, finish, &incidence, &out);
+    Some(out)
+}
+
+/// The polarisation after a finish; scattered light has none.
+fn leaving(stokes: &Stokes, finish: &Finish, incidence: &Incidence, out: &Scattered) -> Stokes {
+    let face = match out.lobe {
+        Lobe::Specular => finish.mueller(incidence, out.side),
+        Lobe::Diffuse => None,
+    };
+    stokes.after(face, incidence, out)
 }
 
 /// The grain direction of a finish on a patch. Meshes have none; finishes with a grain are refused
@@ -111,15 +152,21 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
         }
     };
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    let normal = acting_normal(vertex.dir, shading, facet);
+    let s_share = match &path.stokes {
+        None => Incidence::UNPOLARISED,
+        Some(stokes) => stokes.s_share(vertex.dir, normal),
+    };
     MetInterface {
         faces,
         incidence: Incidence {
             dir: vertex.dir,
-            normal: acting_normal(vertex.dir, shading, facet),
+            normal,
             index_from: index(interface.from),
             index_to: index(interface.to),
             wavelength: path.wavelength,
             grain,
+            s_share,
         },
         facet,
         shading,
@@ -131,16 +178,32 @@ fn acting_normal(dir: DVec3, shading: DVec3, facet: DVec3) -> DVec3 {
     if shading.dot(dir) < 0.0 { shading } else { facet }
 }
 
-/// Sends a gather path on, or absorbs it.
+/// Sends a gather path on, with its polarisation if that is followed, or absorbs it.
+#[inline(always)]
+pub(super) fn send_gather_path(
+    scene: &Scene,
+    path: &mut Path,
+    vertex: &Vertex<'_>,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Scattered> {
+    let met = facing(scene, path, vertex);
+    let out = scatter_at_faces(met.faces, &met.incidence, sampler)?;
+    if let Some(stokes) = &mut path.stokes {
+        *stokes = met.leaving(stokes, &out);
+    }
+    Some(met.corrected(out))
+}
+
+/// Where a gather path goes on, if it is not absorbed.
 pub fn scatter_gather_path(
     scene: &Scene,
     path: &Path,
     vertex: &Vertex<'_>,
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
-    let facing = facing(scene, path, vertex);
-    let out = scatter_at_faces(facing.faces, &facing.incidence, sampler)?;
-    Some(facing.corrected(out))
+    let met = facing(scene, path, vertex);
+    let out = scatter_at_faces(met.faces, &met.incidence, sampler)?;
+    Some(met.corrected(out))
 }
 
 impl<'s> MetInterface<'s> {
@@ -154,6 +217,15 @@ impl<'s> MetInterface<'s> {
         let normal = acting_normal(dir, -self.shading, -self.facet);
         let (index_from, index_to) = (index_to, index_from);
         (self.faces.behind, Incidence { dir, normal, index_from, index_to, ..self.incidence })
+    }
+
+    /// The polarisation of a gather path that is sent on.
+    pub(crate) fn leaving(&self, stokes: &Stokes, out: &Scattered) -> Stokes {
+        let finish = match out.side {
+            Side::Reflected => self.faces.own,
+            Side::Transmitted => self.faces.behind,
+        };
+        leaving(stokes, finish, &self.incidence, out)
     }
 
     /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and

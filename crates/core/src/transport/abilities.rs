@@ -1,0 +1,56 @@
+//! What each estimator can do: which light it can find, and which sensors and treatments of light it takes.
+
+use crate::plan::{Estimator, Polarisation};
+use crate::scene::{Scene, Sensor, Source};
+use crate::transport::connect::vertex::scatters;
+use crate::transport::walk::emitters::invisible;
+
+impl Estimator {
+    /// Estimators that a pilot tries, in the order of its report.
+    pub const TRIED: [Self; 4] = [Self::Forward, Self::Backward, Self::Mix, Self::Gather];
+
+    /// Whether gather paths must meet a source for its light to count.
+    pub fn must_meet_sources(self) -> bool {
+        match self {
+            Self::Forward | Self::Mix | Self::Mis => false,
+            Self::Backward | Self::Gather => true,
+        }
+    }
+
+    /// Whether photons meet records. Which sensors a photon has passed is then unknown, and its wavelength is not that of the record.
+    pub fn has_records(self) -> bool {
+        match self {
+            Self::Forward | Self::Backward | Self::Mix => false,
+            Self::Gather | Self::Mis => true,
+        }
+    }
+
+    /// Whether it can follow polarisation. Where paths of both directions are joined or weighted against each other, the
+    /// chances of one at a face would depend on all faces before it.
+    pub fn follows_polarisation(self) -> bool {
+        match self {
+            Self::Forward | Self::Backward => true,
+            Self::Mix | Self::Gather | Self::Mis => false,
+        }
+    }
+
+    /// Whether a trial in a scene could find more than photons alone do.
+    pub(crate) fn is_worth_a_trial(self, scene: &Scene) -> bool {
+        let can_meet = |source: &Source| invisible(source, scene).is_none();
+        if scene.polarisation == Polarisation::Followed && !self.follows_polarisation() {
+            return false;
+        }
+        match self {
+            Self::Forward => true,
+            Self::Mix => scene.sources.iter().any(can_meet) || scatters(scene),
+            Self::Backward => scene.sources.iter().all(can_meet),
+            Self::Gather => !scene.is_spectral() && scene.sources.iter().all(can_meet),
+            Self::Mis => false,
+        }
+    }
+
+    /// Whether it can estimate a sensor.
+    pub(crate) fn can_estimate(self, sensor: &Sensor) -> bool {
+        !self.has_records() || !sensor.counts_first_passage()
+    }
+}

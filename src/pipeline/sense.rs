@@ -3,7 +3,7 @@
 
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
-use lumiduct_core::plan::{Estimator, Polarisation, Request};
+use lumiduct_core::plan::{Estimator, Request};
 use lumiduct_core::scene::{Scene, SensorId, Source};
 use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible};
 use lumiduct_input::Job;
@@ -121,9 +121,9 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     }
 }
 
-/// Refuses estimators that join paths of both directions where polarisation is followed.
+/// Refuses estimators with records where polarisation is followed.
 fn expect_polarisation(job: &Job, problems: &mut Problems) {
-    if job.scene.polarisation == Polarisation::Ignored {
+    if job.scene.polarisation.is_ignored() {
         return;
     }
     for (key, request) in requests(job) {
@@ -133,7 +133,7 @@ fn expect_polarisation(job: &Job, problems: &mut Problems) {
         let message = format!("`{}` cannot follow polarisation", request.name());
         problems
             .error(&key, message)
-            .hint("use `forward`, `backward` or `auto`, or leave out `run.polarisation`");
+            .hint("use `auto`, `forward`, `backward` or `mix`, or leave out `run.polarisation`");
     }
 }
 

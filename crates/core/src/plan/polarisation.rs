@@ -3,15 +3,16 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of the polarisation of light on its way.
+/// Whether the polarisation of light is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Polarisation {
     /// Light is unpolarised wherever it meets an interface.
     #[default]
     #[serde(rename = "ignored")]
     Ignored,
-    /// Stokes parameters are followed from the sources, whose light is unpolarised, through Fresnel reflection and refraction, total
-    /// reflection, metals and layers; what scatters depolarises. With `forward` and `backward` only.
+    /// Stokes parameters are followed from the sources, all of which count as unpolarised, through smooth interfaces, total reflection,
+    /// metals and thin layers. Mirrors with a given reflectance act as ideal mirrors. Whatever scatters, prism film and mixtures of finishes
+    /// depolarise. For all estimators but `gather` and `mis`. Slower in mirror tubes and rods, where rows of bounces are traced one by one.
     #[serde(rename = "followed")]
     Followed,
 }

@@ -212,7 +212,8 @@ impl Builder {
         self.scene.surroundings = medium;
     }
 
-    /// Sets what becomes of the polarisation of light; by default it is ignored.
+    /// Sets what becomes of the polarisation of light; by default it is ignored. Only estimators for which
+    /// [`follows_polarisation`](crate::plan::Estimator::follows_polarisation) is true may then be asked for.
     pub fn set_polarisation(&mut self, polarisation: Polarisation) {
         self.scene.polarisation = polarisation;
     }

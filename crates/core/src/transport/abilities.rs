@@ -1,6 +1,6 @@
-//! What each estimator can do: which light it can find, and which sensors and treatments of light it takes.
+//! What each estimator can do: which light it can find, which sensors it can estimate, and whether it follows polarisation.
 
-use crate::plan::{Estimator, Polarisation};
+use crate::plan::Estimator;
 use crate::scene::{Scene, Sensor, Source};
 use crate::transport::connect::vertex::scatters;
 use crate::transport::walk::emitters::invisible;
@@ -25,19 +25,17 @@ impl Estimator {
         }
     }
 
-    /// Whether it can follow polarisation. Where paths of both directions are joined or weighted against each other, the
-    /// chances of one at a face would depend on all faces before it.
+    /// Whether it can follow polarisation. Records on smooth faces would have to pair photons and gather paths by their polarisation,
+    /// which is not done. Joins need not: what scatters depolarises, and between two such places the chances of the faces
+    /// are the same both ways.
     pub fn follows_polarisation(self) -> bool {
-        match self {
-            Self::Forward | Self::Backward => true,
-            Self::Mix | Self::Gather | Self::Mis => false,
-        }
+        !self.has_records()
     }
 
     /// Whether a trial in a scene could find more than photons alone do.
     pub(crate) fn is_worth_a_trial(self, scene: &Scene) -> bool {
         let can_meet = |source: &Source| invisible(source, scene).is_none();
-        if scene.polarisation == Polarisation::Followed && !self.follows_polarisation() {
+        if !scene.polarisation.is_ignored() && !self.follows_polarisation() {
             return false;
         }
         match self {

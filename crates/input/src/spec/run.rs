@@ -41,7 +41,7 @@ pub struct RunSpec {
     #[serde(default = "bounce_limit")]
     #[schemars(range(min = 1, max = 10_000_000))]
     pub bounce_limit: u32,
-    /// What becomes of the polarisation of light.
+    /// Whether the polarisation of light is followed.
     #[serde(default)]
     pub polarisation: Polarisation,
 }

@@ -40,7 +40,11 @@ impl FinishModel for Coated<'_> {
         self.scatter(incidence, sampler).map(Scattered::normalised)
     }
 
-    fn mueller(&self, _incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+    /// Total reflection is that of the bare face.
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        if SmoothInterface.only_mirrors(incidence) {
+            return SmoothInterface.mueller(incidence, side);
+        }
         Some(FaceMueller::ideal(side))
     }
 

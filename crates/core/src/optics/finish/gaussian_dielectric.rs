@@ -50,7 +50,7 @@ impl FinishModel for GaussianDielectric<'_> {
         if incidence.index_from == incidence.index_to {
             self.shares(incidence)
         } else {
-            SmoothInterface::chances_about(incidence)
+            SmoothInterface::chances_about(&incidence.unpolarised())
         }
     }
 

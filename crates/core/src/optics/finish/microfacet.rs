@@ -11,7 +11,7 @@
 
 use crate::optics::finish::model::FinishModel;
 use crate::optics::finish::smooth::SmoothInterface;
-use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
+use crate::optics::{FaceMueller, Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 use lumiduct_base::math::{Frame, disk};
@@ -109,8 +109,13 @@ impl FinishModel for Microfacet {
         self.sides(incidence).1
     }
 
+    /// Where it has no effect, light keeps its polarisation.
+    fn mueller(&self, incidence: &Incidence, side: Side) -> Option<FaceMueller> {
+        self.is_nothing(incidence).then(|| FaceMueller::ideal(side))
+    }
+
     fn radiance_chances(&self, incidence: &Incidence) -> Shares {
-        SmoothInterface::chances_about(incidence)
+        SmoothInterface::chances_about(&incidence.unpolarised())
     }
 
     /// WMLT eq. 20 and, with the square of the index on the exit side, eq. 21.

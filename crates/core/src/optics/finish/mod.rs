@@ -19,6 +19,8 @@ pub(crate) mod microfacet;
 mod mixture;
 pub(crate) mod model;
 mod open;
+#[cfg(test)]
+mod polarised;
 mod prism_film;
 mod smooth;
 pub(crate) mod spectral;
@@ -26,7 +28,7 @@ mod specular;
 mod stack;
 mod tabulated;
 #[cfg(test)]
-pub(crate) mod testing;
+mod testing;
 
 use crate::optics::bsdf::sheet::{MeasuredSheet, SheetSide};
 use crate::optics::finish::absorber::Absorber;

@@ -3,13 +3,15 @@
 //! It combines the finish, the normal and the indices; the physics is in `optics`.
 
 use crate::optics::{
-    Faces, Finish, FinishModel, Incidence, Lobe, Scattered, Side, Stokes, scatter_at_faces,
+    FaceMueller, Faces, Finish, FinishModel, Incidence, Lobe, Scattered, Side, Stokes,
+    scatter_at_faces,
 };
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{FaceId, FinishId, Interface, MediumId, Patch, Scene, Surface};
 use crate::transport::{Path, Vertex};
 use glam::DVec3;
+use lumiduct_base::math::unit;
 
 /// The smooth interface of two media, where no finish is declared.
 static SMOOTH: Finish = Finish::Smooth;
@@ -80,17 +82,16 @@ fn send_polarised(
     let s_share = stokes.s_share(incidence.dir, incidence.normal);
     let incidence = Incidence { s_share, ..*incidence };
     let out = finish.scatter(&incidence, sampler)?;
-    *stokes = leaving(stokes, finish, &incidence, &out);
+    *stokes = stokes.after(action(finish, &incidence, &out), &incidence, &out);
     Some(out)
 }
 
-/// The polarisation after a finish; scattered light has none.
-fn leaving(stokes: &Stokes, finish: &Finish, incidence: &Incidence, out: &Scattered) -> Stokes {
-    let face = match out.lobe {
-        Lobe::Specular => finish.mueller(incidence, out.side),
+/// The action of a finish on polarised light that it sent on; `None` if that is depolarised, as all scattered light is.
+fn action(finish: &Finish, light: &Incidence, out: &Scattered) -> Option<FaceMueller> {
+    match out.lobe {
+        Lobe::Specular => finish.mueller(light, out.side),
         Lobe::Diffuse => None,
-    };
-    stokes.after(face, incidence, out)
+    }
 }
 
 /// The grain direction of a finish on a patch. Meshes have none; finishes with a grain are refused
@@ -194,7 +195,7 @@ pub(super) fn send_gather_path(
     Some(met.corrected(out))
 }
 
-/// Where a gather path goes on, if it is not absorbed.
+/// Where a gather path whose polarisation is ignored goes on, if it is not absorbed.
 pub fn scatter_gather_path(
     scene: &Scene,
     path: &Path,
@@ -219,13 +220,11 @@ impl<'s> MetInterface<'s> {
         (self.faces.behind, Incidence { dir, normal, index_from, index_to, ..self.incidence })
     }
 
-    /// The polarisation of a gather path that is sent on.
-    pub(crate) fn leaving(&self, stokes: &Stokes, out: &Scattered) -> Stokes {
-        let finish = match out.side {
-            Side::Reflected => self.faces.own,
-            Side::Transmitted => self.faces.behind,
-        };
-        leaving(stokes, finish, &self.incidence, out)
+    /// The polarisation of a gather path that is sent on. The face acts on the light that comes the other way, and by reciprocity
+    /// alike on the path.
+    fn leaving(&self, stokes: &Stokes, out: &Scattered) -> Stokes {
+        let (finish, light) = self.acting_on(-unit(out.dir));
+        stokes.after(action(finish, &light, out), &self.incidence, out)
     }
 
     /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and

@@ -146,7 +146,7 @@ fn two_mirrors_pass_more_in_one_plane_than_crossed() {
 
 #[test]
 fn mirrors_in_skew_planes_pass_what_fields_say() {
-    // The second one makes elliptical light, which the third tells from unpolarised light.
+    // The second mirror makes the light elliptical, and what the third reflects depends on that.
     let dirs = turning();
     for metal in [(1.5, 1.2), (0.3, 1.1), (0.96, 6.69)] {
         let expected = by_fields(&dirs, [metal.0, metal.1]);
@@ -201,8 +201,8 @@ impl FieldRay {
     }
 }
 
-/// Share of the light of a Lambertian disk of radius 0.5 that leaves the far end of a rod of radius 1.5, length 60 and
-/// index 1.49, 0.2 in front of which it is: fields traced by hand.
+/// Share of the light that leaves the far end of a rod of radius 1.5, length 60 and index 1.49. The source is a Lambertian disk of
+/// radius 0.5, a gap of 0.2 before the entry. Complex fields are traced, without Stokes parameters.
 fn rod_by_fields(paths: u32) -> f64 {
     const RADIUS: f64 = 1.5;
     const LENGTH: f64 = 60.0;

@@ -128,13 +128,13 @@ impl<'a> Evidence<'a> {
 
     /// The mean of a number over the light of a sensor, from the sum of flux times that number and the flux of
     /// light beyond some numbers. One more count whose number differs by 1 is always possible: where all
-    /// counted ones agree, that is the error. Paths that have hardly met a tail of which photons know that it
-    /// moves the mean by more than its error do not know that error either.
+    /// counted ones agree, that is the error. The error cannot be trusted where photons show that such a tail shifts the mean by
+    /// more than that, and the paths have hardly sampled it.
     pub(crate) fn mean_number(
         &self,
         weighted: &[usize],
         flux: &[usize],
-        tails: impl Iterator<Item = (usize, f64)>,
+        mut tails: impl Iterator<Item = (usize, f64)>,
     ) -> Measure {
         let mean = self.ratio(weighted, flux);
         if mean.status == Status::NoSignal {
@@ -155,7 +155,7 @@ impl<'a> Evidence<'a> {
                 && known.value * number > std_error
                 && self.ratio(&[tail], flux).status != Status::Ok
         };
-        let misses = self.estimator != Estimator::Forward && { tails }.any(is_missed);
+        let misses = self.estimator != Estimator::Forward && tails.any(is_missed);
         let status = if misses { mean.status.worst(Status::TooFew) } else { mean.status };
         Measure { std_error, status, ..mean }
     }

@@ -10,9 +10,9 @@ pub enum Polarisation {
     #[default]
     #[serde(rename = "ignored")]
     Ignored,
-    /// Stokes parameters are followed from the sources, all of which count as unpolarised, through smooth interfaces, total reflection,
-    /// metals and thin layers. Mirrors with a given reflectance act as ideal mirrors. Whatever scatters, prism film and mixtures of finishes
-    /// depolarise. For all estimators but `gather` and `mis`. Slower in mirror tubes and rods, where rows of bounces are traced one by one.
+    /// Light carries Stokes parameters through smooth interfaces, total reflection, metals and thin layers. All sources are taken as
+    /// unpolarised. Mirrors with a given reflectance act as ideal mirrors; scatter, prism film and mixtures of finishes depolarise. Not
+    /// for `gather` and `mis`. Mirror tubes and rods take longer, because their bounces are traced one by one.
     #[serde(rename = "followed")]
     Followed,
 }

@@ -275,9 +275,8 @@ fn polarisation(polarisation: Polarisation) -> &'static str {
     match polarisation {
         Polarisation::Ignored => {
             "light is treated as unpolarised at every interface, which makes transmission slightly too low: by \
-             0.7 % for a straight \
-             rod with two polished ends under a Lambertian source, by 3.6 % for a plate of index 1.49 at 75° (examples, not \
-             this scene; docs/theory.md, eq. 2)"
+             0.46 % for a straight round rod with two polished ends under a Lambertian source, by 0.73 % for a plate under the \
+             same, by 3.6 % for a plate of index 1.49 at 75° (examples, not this scene; docs/theory.md, eq. 2)"
         }
         Polarisation::Followed => {
             "polarisation is followed from unpolarised sources through smooth interfaces, metals, mirrors and layers; all \

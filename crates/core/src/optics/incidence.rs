@@ -96,18 +96,27 @@ pub struct Scattered {
     pub side: Side,
     /// Discrete or drawn.
     pub lobe: Lobe,
+    /// Probability with which this side was chosen, given that the light was not absorbed, 1; also 1 where a finish does not
+    /// state it (haze, facets, prism film).
+    pub chance: f64,
 }
 
 impl Scattered {
     /// Light that leaves in a discrete direction.
     #[inline]
     pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Self {
-        Self { dir, factor, side, lobe: Lobe::Specular }
+        Self { dir, factor, side, lobe: Lobe::Specular, chance: 1.0 }
     }
 
     /// Light that leaves in a drawn direction.
     pub(crate) fn diffuse(dir: DVec3, factor: f64, side: Side) -> Self {
-        Self { dir, factor, side, lobe: Lobe::Diffuse }
+        Self { dir, factor, side, lobe: Lobe::Diffuse, chance: 1.0 }
+    }
+
+    /// The same light, whose side was chosen in proportion to these shares.
+    #[inline]
+    pub(crate) fn chosen_by(self, shares: Shares) -> Self {
+        Self { chance: shares.of(self.side) / shares.sum(), ..self }
     }
 
     /// The same light along a unit vector.

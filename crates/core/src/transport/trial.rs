@@ -9,6 +9,7 @@ use crate::tally::Tally;
 use crate::transport::batches::BatchSizes;
 use crate::transport::photon_pilot::PhotonPilot;
 use crate::transport::stop::StopSignal;
+use crate::transport::tally::sensor_reading::SensorReading;
 use crate::transport::trial::strata::{PAIR, TriedStrata};
 use crate::transport::{Cells, Layout, Readings};
 use serde::{Deserialize, Serialize};
@@ -109,6 +110,24 @@ impl TriedBatches {
     fn strata_of(&self, sensor: usize) -> Option<&TriedStrata> {
         self.strata.get(sensor)?.as_ref()
     }
+
+    /// For each sensor of a scene, the share of its cost that control variates leave, 1: all of it where its cells are judged.
+    fn left_by_controls(&self, scene: &Scene) -> Vec<f64> {
+        let layout = Layout::new(scene);
+        let counted = all_of(&self.batches);
+        let adjusted = counted.clone().adjusted(scene);
+        let left = |(id, reading): (usize, &SensorReading)| {
+            let flux = layout.flux_slots(SensorId::new(id));
+            let [of_counts, left] =
+                [&counted, &adjusted].map(|readings| readings.sum(&flux).std_error());
+            if reading.cells.count() == 1 && left < of_counts {
+                (left / of_counts).powi(2)
+            } else {
+                1.0
+            }
+        };
+        (0..).zip(&counted.sensors).map(left).collect()
+    }
 }
 
 impl Trials<'_> {
@@ -148,6 +167,7 @@ impl Trials<'_> {
                 most_gain: MOST_GAIN,
             },
         };
+        let left = large.left_by_controls(self.scene);
         let of_sensor = |((mut tried, smaller), place): ((Tried, Tried), usize)| {
             let lit = |batch: &&Readings| is_lit(self.scene, batch, self.sensors[place]);
             let lit = small.batches.iter().filter(lit).count();
@@ -156,6 +176,7 @@ impl Trials<'_> {
             {
                 *own = sizes(place).extrapolated([*own, smaller]);
             }
+            tried.trial.cost = tried.trial.cost.map(|own| own * left[self.sensors[place].index()]);
             tried
         };
         let both = judged(&large).into_iter().zip(judged(&small));
@@ -169,7 +190,7 @@ impl Trials<'_> {
         work: f64,
         estimator: Estimator,
     ) -> Vec<Tried> {
-        let merged = batches.iter().skip(1).fold(batches[0].clone(), |sum, batch| sum.merge(batch));
+        let merged = all_of(batches);
         let of_sensor = |&sensor: &SensorId| {
             let variance = relative_variance(self.scene, batches, &merged, sensor);
             let cost = variance.map(|variance| 1e-9 * work * variance);
@@ -206,6 +227,11 @@ impl Growth {
         }
         (larger.ln() / self.tried.ln()).clamp(0.0, self.most_gain)
     }
+}
+
+/// The counts of some batches together.
+fn all_of(batches: &[Readings]) -> Readings {
+    batches.iter().skip(1).fold(batches[0].clone(), |sum, batch| sum.merge(batch))
 }
 
 /// Whether a batch has found light on a sensor.

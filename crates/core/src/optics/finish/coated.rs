@@ -28,8 +28,10 @@ impl FinishModel for Coated<'_> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        let side = self.shares(incidence).choose_side(sampler)?;
-        Some(Scattered::specular(SmoothInterface::direction(incidence, side)?, 1.0, side))
+        let shares = self.shares(incidence);
+        let side = shares.choose_side(sampler)?;
+        let dir = SmoothInterface::direction(incidence, side)?;
+        Some(Scattered::specular(dir, 1.0, side).chosen_by(shares))
     }
 
     fn scatter_radiance(

@@ -20,9 +20,10 @@ impl FinishModel for GaussianDielectric<'_> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        let Scattered { dir, side, .. } = SmoothInterface::send(&incidence.unpolarised(), sampler);
-        let dir = self.lobe.sample(dir.normalize(), incidence.leaving_normal(side), sampler);
-        Some(Scattered::diffuse(dir, 1.0, side))
+        let out = SmoothInterface::send(&incidence.unpolarised(), sampler);
+        let normal = incidence.leaving_normal(out.side);
+        let dir = self.lobe.sample(out.dir.normalize(), normal, sampler);
+        Some(Scattered { chance: out.chance, ..Scattered::diffuse(dir, 1.0, out.side) })
     }
 
     fn scatter_radiance(

@@ -24,7 +24,7 @@ impl FinishModel for GaussianSheet<'_> {
         let side = self.shares.choose_side(sampler)?;
         let normal = incidence.leaving_normal(side);
         let dir = self.lobe.sample(incidence.straight(side), normal, sampler);
-        Some(Scattered::diffuse(dir, self.shares.sum(), side))
+        Some(Scattered::diffuse(dir, self.shares.sum(), side).chosen_by(self.shares))
     }
 
     fn scatter_radiance(

@@ -24,7 +24,8 @@ impl FinishModel for Lambertian {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         let side = self.shares.choose_side(sampler)?;
-        Some(Scattered::diffuse(draw(incidence, side, sampler), self.shares.sum(), side))
+        let dir = draw(incidence, side, sampler);
+        Some(Scattered::diffuse(dir, self.shares.sum(), side).chosen_by(self.shares))
     }
 
     fn scatter_toward(

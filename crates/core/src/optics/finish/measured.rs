@@ -89,7 +89,7 @@ impl FinishModel for MetSheet<'_> {
         let side = shares.choose_side(sampler)?;
         let to = self.table(side)?.leave(from, sampler.pair(Dimension::Scatter));
         let dir = axes.direction(to, incidence.leaving_normal(side));
-        Some(Scattered::diffuse(dir, shares.sum(), side))
+        Some(Scattered::diffuse(dir, shares.sum(), side).chosen_by(shares))
     }
 
     fn scatter_radiance(

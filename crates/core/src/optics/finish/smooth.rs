@@ -26,8 +26,11 @@ impl SmoothInterface {
             if sampler.one(Dimension::Lobe) >= reflectance {
                 let eta = index_from / index_to;
                 let refracted = fresnel::refracted(dir, normal, cos_i, cos_t, eta);
-                return Scattered::specular(refracted, 1.0, Side::Transmitted);
+                let out = Scattered::specular(refracted, 1.0, Side::Transmitted);
+                return Scattered { chance: 1.0 - reflectance, ..out };
             }
+            let out = Scattered::specular(fresnel::mirrored(dir, normal), 1.0, Side::Reflected);
+            return Scattered { chance: reflectance, ..out };
         }
         Scattered::specular(fresnel::mirrored(dir, normal), 1.0, Side::Reflected)
     }
@@ -127,7 +130,7 @@ mod tests {
         let mut used = Sampler::for_path(1, 0, 0);
         let mut fresh = used.clone();
         let out = SmoothInterface::send(&incidence(1.0, [1.49, 1.0]), &mut used);
-        assert_eq!((out.side, out.factor), (Side::Reflected, 1.0));
+        assert_eq!((out.side, out.factor, out.chance), (Side::Reflected, 1.0, 1.0));
         assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
     }
 }

@@ -20,7 +20,8 @@ impl FinishModel for Specular {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         let side = self.shares.choose_side(sampler)?;
-        Some(Scattered::specular(incidence.straight(side), self.shares.sum(), side))
+        let out = Scattered::specular(incidence.straight(side), self.shares.sum(), side);
+        Some(out.chosen_by(self.shares))
     }
 
     fn scatter_radiance(

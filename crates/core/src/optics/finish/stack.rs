@@ -65,7 +65,8 @@ fn send(
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     let side = shares.choose_side(sampler)?;
-    Some(Scattered::specular(SmoothInterface::direction(incidence, side)?, shares.sum(), side))
+    let dir = SmoothInterface::direction(incidence, side)?;
+    Some(Scattered::specular(dir, shares.sum(), side).chosen_by(shares))
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ impl FinishModel for Tabulated<'_> {
     ) -> Option<Scattered> {
         let shares = self.shares(incidence);
         let side = shares.choose_side(sampler)?;
-        Some(Scattered::specular(incidence.straight(side), shares.sum(), side))
+        Some(Scattered::specular(incidence.straight(side), shares.sum(), side).chosen_by(shares))
     }
 
     fn mueller(&self, _incidence: &Incidence, side: Side) -> Option<FaceMueller> {

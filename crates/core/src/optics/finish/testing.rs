@@ -2,8 +2,8 @@
 
 use crate::optics::{
     AngleTable, Faces, FacetKind, Finish, FinishModel, Gaussian, Haze, HazeBase, HazeLaw,
-    HazeSides, Incidence, IndexLaw, LayerStack, Lobe, Microfacet, REFERENCE_WAVELENGTH, Side,
-    ThinLayer, scatter_at_faces,
+    HazeSides, Incidence, IndexLaw, LayerStack, Lobe, Microfacet, REFERENCE_WAVELENGTH, Scattered,
+    Side, ThinLayer, scatter_at_faces,
 };
 use crate::rng::{Dimension, Sampler};
 use crate::tally::Tally;
@@ -136,22 +136,24 @@ fn assert_paths_are_sound(finish: &Finish) {
     }
 }
 
-/// Photons go to each side in the shares and with the chances that the finish gives.
+/// Photons go to each side in the shares and with the chances that the finish gives, and that they state.
 fn assert_follows_shares(finish: &Finish) {
     for incidence in light() {
         for side in [Side::Reflected, Side::Transmitted] {
-            let sent = |worth: fn(f64) -> f64| {
+            let sent = |worth: fn(&Scattered, bool) -> f64| {
                 Tally::of((0..10_000).map(|index| {
                     let mut sampler = Sampler::for_path(5, 0, index);
-                    finish
-                        .scatter(&incidence, &mut sampler)
-                        .filter(|out| out.side == side)
-                        .map_or(0.0, |out| worth(out.factor))
+                    let out = finish.scatter(&incidence, &mut sampler);
+                    out.map_or(0.0, |out| worth(&out, out.side == side))
                 }))
             };
-            let flux = (sent(|factor| factor), finish.shares(&incidence).of(side));
-            let number = (sent(|_| 1.0), finish.chances(&incidence).of(side));
-            for (seen, expected) in [flux, number] {
+            let flux = sent(|out, is_there| if is_there { out.factor } else { 0.0 });
+            let number = sent(|_, is_there| f64::from(u8::from(is_there)));
+            let surprise =
+                sent(|out, is_there| if is_there { 1.0 - out.chance } else { out.chance - 1.0 });
+            let [shares, chances] = [finish.shares(&incidence), finish.chances(&incidence)];
+            let expected = [(flux, shares.of(side)), (number, chances.of(side)), (surprise, 0.0)];
+            for (seen, expected) in expected {
                 // A constant share is exact up to rounding.
                 let met =
                     (seen.mean() - expected).abs() < 1e-9 || seen.sigmas_from(expected).abs() < 4.0;

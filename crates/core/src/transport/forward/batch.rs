@@ -43,6 +43,7 @@ impl Forward<'_> {
                     return None;
                 }
             }
+            counter.end_source();
         }
         Some(counter.finish())
     }

@@ -7,6 +7,7 @@ use crate::rng::{Points, Sampler, stream};
 use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, RowReach, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
+use crate::transport::tally::controls::Blocks;
 use crate::transport::tally::sensor_reading::{ClassStep, DetectedLight, Trail};
 use crate::transport::{
     Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
@@ -23,6 +24,7 @@ pub(super) struct PhotonCounter<'r, 's, O> {
     readings: Readings,
     /// The scalars of the readings, until the batch is finished.
     sums: Vec<f64>,
+    blocks: Blocks,
     /// Flux of the current photon at throughput 1, lm or W.
     flux: f64,
     pub(super) source: SourceId,
@@ -54,11 +56,13 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         observer: &'r mut O,
         pace: &'r Pace<'r>,
     ) -> Self {
+        let sums = std::mem::take(&mut readings.groups[0].sums);
         Self {
             run,
             observer,
             pace,
-            sums: std::mem::take(&mut readings.groups[0].sums),
+            blocks: Blocks::new(&run.layout, &sums),
+            sums,
             readings,
             flux: 0.0,
             source: SourceId::new(0),
@@ -98,6 +102,13 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let path = Path::emitted(scene, source, emitted);
         _ = self.observer.see(&path, Event::Start(&Emergence { source, shape, flux }));
         walk(scene, path, self.run.bounce_limit, &mut sampler, self);
+        self.blocks.count_path(&self.run.layout, &self.sums);
+    }
+
+    /// Ends the paths of a source.
+    pub(super) fn end_source(&mut self) {
+        let controls = self.blocks.end_source(&self.run.layout, &self.sums);
+        self.readings.controls.merge(&controls);
     }
 
     #[inline(always)]
@@ -137,6 +148,9 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let absorbed = vertex.throughput - departure.throughput;
         if absorbed > 0.0 {
             self.add(self.run.layout.absorbed_by_face(face), absorbed);
+        }
+        if let Some((kind, surprise)) = self.run.surprises.at_face(self.source, vertex, departure) {
+            self.add(self.run.layout.control(kind), surprise);
         }
         let light = Light {
             counts: CountedLight::Leaving,
@@ -257,7 +271,10 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
                 let face = vertex.interface.acting.face;
                 self.add(layout.absorbed_by_face(face), vertex.throughput);
             }
-            Event::Roulette(lost) => self.add(layout.roulette(), lost),
+            Event::Roulette(lost) => {
+                self.add(layout.roulette(), lost);
+                self.add(layout.control(self.run.surprises.at_roulette(self.source)), lost);
+            }
             Event::Escaped(throughput) => {
                 self.add(layout.escaped(self.last_left), throughput);
                 for &(id, goniometer) in &self.run.sensors.far {

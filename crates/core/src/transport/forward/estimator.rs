@@ -6,6 +6,7 @@
 use crate::scene::Scene;
 use crate::transport::Layout;
 use crate::transport::forward::sensor_table::SensorTable;
+use crate::transport::forward::surprises::Surprises;
 
 /// Shared data of all batches of a run.
 #[derive(Debug)]
@@ -13,6 +14,7 @@ pub struct Forward<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) layout: Layout,
     pub(crate) sensors: SensorTable<'s>,
+    pub(super) surprises: Surprises,
     pub(crate) seed: u64,
     pub(crate) bounce_limit: u32,
     /// Paths per batch of each source.
@@ -26,6 +28,7 @@ impl<'s> Forward<'s> {
             scene,
             layout: Layout::new(scene),
             sensors: SensorTable::new(scene),
+            surprises: Surprises::new(scene),
             seed,
             bounce_limit,
             shares: shares(scene, batch_paths),

@@ -6,6 +6,7 @@ mod counter;
 mod estimator;
 mod sensor_table;
 mod shown;
+mod surprises;
 #[cfg(test)]
 mod tests;
 mod tracks;

@@ -345,7 +345,7 @@ impl<'s> Run<'s> {
     pub fn findings(&self) -> Findings {
         let photons = self.photons.in_progress().expect("a batch has been traced");
         Findings {
-            photons: photons.counts.first().clone(),
+            photons: photons.counts.first().clone().adjusted(self.forward.scene),
             others: self.others.iter().map(|(own, series)| own.found(series)).collect(),
             estimators: self.estimators.clone(),
             choices: self.choices.clone(),

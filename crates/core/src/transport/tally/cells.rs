@@ -148,6 +148,14 @@ impl Cells {
         self.get_mut(cell)[0] += flux;
     }
 
+    /// Multiplies all flux of batches that have ended.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.each_mut(|[sum, squares]| {
+            *sum *= factor;
+            *squares *= factor * factor;
+        });
+    }
+
     /// Mean over batches and its standard error, for a cell.
     pub fn mean(&self, cell: usize, batches: u64) -> (f64, f64) {
         let [sum, squares] = self.get(cell);

@@ -4,9 +4,13 @@
 
 use crate::scene::{FaceId, MediumId, Scene, SensorId, SourceId};
 use crate::transport::tally::colour::{SPECTRUM_BINS, Stimulus};
+use std::ops::Range;
 
 /// Depths for which the flux of deeper paths is kept, in interfaces met.
 pub(crate) const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
+
+/// Kinds of surprises at the choices of photons; those beyond share the last.
+pub(crate) const CONTROLS: usize = 64;
 
 /// A way to lose a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +46,33 @@ impl Layout {
 
     /// Number of scalars.
     pub(crate) fn len(&self) -> usize {
-        self.sensor_base(self.sensors)
+        self.sensor_slots().end + CONTROLS
+    }
+
+    /// All scalars of sensors.
+    pub(crate) fn sensor_slots(&self) -> Range<usize> {
+        self.sensor_base(0)..self.sensor_base(self.sensors)
+    }
+
+    /// All scalars of a sensor.
+    pub(crate) fn slots_of(&self, sensor: SensorId) -> Range<usize> {
+        self.sensor_base(sensor.index())..self.sensor_base(sensor.index() + 1)
+    }
+
+    /// Flux that started, from all sources.
+    pub(crate) fn emitted_slots(&self) -> Range<usize> {
+        0..self.sources
+    }
+
+    /// Surprises of a kind: flux that chance has sent on, less what was to be expected.
+    #[inline]
+    pub(crate) fn control(&self, kind: usize) -> usize {
+        self.sensor_slots().end + kind
+    }
+
+    /// Surprises of all kinds.
+    pub(crate) fn control_slots(&self) -> Range<usize> {
+        self.control(0)..self.control(CONTROLS)
     }
 
     /// Flux that started, by source.

@@ -1,8 +1,10 @@
 //! Counts: cells, colour, scalars by their layout, losses, and sums over batches.
 
+mod adjusted;
 pub(crate) mod cell_stimuli;
 mod cells;
 pub(crate) mod colour;
+pub(crate) mod controls;
 mod counts;
 mod layout;
 pub mod readings;
@@ -15,4 +17,4 @@ pub use counts::Stage;
 pub(crate) use counts::merged;
 pub use counts::{Counts, Series};
 pub use layout::Layout;
-pub(crate) use layout::{Loss, TAILS};
+pub(crate) use layout::{CONTROLS, Loss, TAILS};

@@ -7,6 +7,7 @@
 
 use crate::scene::{LightGroups, Scene, SensorId};
 use crate::tally::Tally;
+use crate::transport::tally::controls::Controls;
 use crate::transport::tally::sensor_reading::{DetectedLight, SensorReading};
 use crate::transport::{Layout, Loss};
 use glam::DVec3;
@@ -21,7 +22,7 @@ pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
 /// Format of the serialised readings.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 
 /// Sums over the batches of one group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,6 +62,8 @@ pub struct Readings {
     pub groups: Vec<Group>,
     /// One for each sensor.
     pub sensors: Vec<SensorReading>,
+    /// Surprises at the choices of photons.
+    pub controls: Controls,
     /// Segments traced: the work done.
     pub segments: u64,
     /// Places of sources and sensors that vertices were joined to, be they visible or not.
@@ -93,6 +96,7 @@ impl Readings {
                 .iter()
                 .map(|sensor| SensorReading::new(scene, (sensor.cells(), batch_paths)))
                 .collect(),
+            controls: Controls::default(),
             segments: 0,
             joins: 0,
             leaks: Vec::new(),
@@ -111,6 +115,7 @@ impl Readings {
             batches: first..last + 1,
             groups,
             sensors: Vec::new(),
+            controls: Controls::default(),
             segments: 0,
             joins: 0,
             leaks: Vec::new(),
@@ -172,6 +177,7 @@ impl Readings {
         for (own, later) in self.sensors.iter_mut().zip(&later.sensors) {
             own.merge(later);
         }
+        self.controls.merge(&later.controls);
         let room = LEAK_LIMIT.saturating_sub(self.leaks.len());
         self.leaks.extend(later.leaks.iter().take(room).cloned());
         self
@@ -183,6 +189,7 @@ impl Readings {
         Self {
             groups: kept.cloned().collect(),
             sensors: Vec::new(),
+            controls: Controls::default(),
             leaks: Vec::new(),
             batches: self.batches.clone(),
             ..*self

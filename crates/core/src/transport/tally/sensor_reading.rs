@@ -99,6 +99,13 @@ impl SensorReading {
         self.depths.close_batch();
     }
 
+    /// Multiplies the flux of all cells and depths of batches that have ended; colours of cells do not depend on it.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.cells.scale(factor);
+        self.groups.iter_mut().for_each(|cells| cells.scale(factor));
+        self.depths.scale(factor);
+    }
+
     /// Makes it `a` times its counts and `b` times those of another.
     pub(crate) fn combine(&mut self, shares: [f64; 2], other: &Self) {
         self.each(other, |own, other| *own = own.combined(shares, other));

@@ -140,8 +140,8 @@ fn bounce<V: Observer>(
     let next = Ray::new(point, out.dir);
     path.ray = next;
     path.throughput *= out.factor;
-    let Scattered { side, lobe, .. } = out;
-    let departure = Departure { dir: next.dir(), throughput: path.throughput, side, lobe };
+    let Scattered { side, lobe, chance, .. } = out;
+    let departure = Departure { dir: next.dir(), throughput: path.throughput, side, lobe, chance };
     observer.see(path, Event::Depart(&vertex, &departure))?;
     if out.side == Side::Transmitted {
         path.medium = interface.to;
@@ -180,5 +180,5 @@ fn collide<V: Observer>(
 }
 
 fn straight_on(dir: DVec3) -> Scattered {
-    Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: Lobe::Specular }
+    Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: Lobe::Specular, chance: 1.0 }
 }

@@ -74,6 +74,9 @@ pub struct Departure {
     pub side: Side,
     /// Discrete or drawn.
     pub lobe: Lobe,
+    /// Probability with which this side was chosen, given that the light was not absorbed, 1; also 1 where a finish does
+    /// not state it.
+    pub chance: f64,
 }
 
 /// Start of a photon path.

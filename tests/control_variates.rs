@@ -10,7 +10,7 @@ use lumiduct_core::tally::Tally;
 use lumiduct_input::{self as input, Settings};
 use std::path::Path;
 
-/// Two sources in front of a rod, of which one fills its entry.
+/// A small and a large source in front of a rod.
 const ROD: &str = r#"
 [media.pmma]
 index = 1.49

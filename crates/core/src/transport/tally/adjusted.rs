@@ -1,7 +1,6 @@
 //! Fluxes of sensors adjusted by control variates, where groups of batches show that this pays.
 
 use crate::scene::{Scene, SensorId};
-use crate::tally::Tally;
 use crate::transport::Layout;
 use crate::transport::tally::controls::Controls;
 use crate::transport::tally::readings::{Group, Readings};
@@ -15,6 +14,7 @@ const MIN_GROUPS: usize = 16;
 const MOST_VARIANCE: f64 = 0.5;
 /// Surprises of a block below this share of its flux are rounding, 1.
 const ROUNDING: f64 = 1e-9;
+
 impl Readings {
     /// The same with the scalars of sensors adjusted by surprises, where that at least halves the variance of a sensor's flux. Its
     /// cells are scaled as its flux changes.
@@ -23,19 +23,18 @@ impl Readings {
         if self.controls.blocks < MIN_BLOCKS || self.groups.len() < MIN_GROUPS {
             return self;
         }
-        let adjusted = self.adjusted_groups(&layout);
-        let emitted = total(&self.groups, layout.emitted_slots());
+        let adjusted = self.with_groups(self.adjusted_groups(&layout));
+        let emitted = self.total(layout.emitted_slots());
         for sensor in (0..self.sensors.len()).map(SensorId::new) {
             let flux = layout.flux_slots(sensor);
-            let [before, after] =
-                [&self.groups, &adjusted].map(|own| total(own, flux.iter().copied()));
-            let [counted, left] = [&self.groups, &adjusted].map(|own| variance(own, &flux));
+            let [before, after] = [&self, &adjusted].map(|own| own.total(flux.iter().copied()));
+            let [counted, left] = [&self, &adjusted].map(|own| own.sum(&flux).std_error().powi(2));
             // No sensor shows more light than there is because of noise.
             let is_possible = 0.0 < after && (after <= emitted || before > emitted);
             if left <= MOST_VARIANCE * counted && is_possible {
                 self.sensors[sensor.index()].scale(after / before);
                 let own = layout.slots_of(sensor);
-                for (group, adjusted) in self.groups.iter_mut().zip(&adjusted) {
+                for (group, adjusted) in self.groups.iter_mut().zip(&adjusted.groups) {
                     group.sums[own.clone()].copy_from_slice(&adjusted.sums[own.clone()]);
                 }
             }
@@ -60,11 +59,16 @@ impl Readings {
         groups
     }
 
+    /// Sum of some slots over all groups.
+    fn total(&self, slots: impl Iterator<Item = usize>) -> f64 {
+        slots.map(|slot| self.groups.iter().map(|group| group.sums[slot]).sum::<f64>()).sum()
+    }
+
     /// For every slot of surprises that have happened, the slopes of some scalars against them.
     fn slopes(&self, layout: &Layout, scalars: &[usize]) -> Vec<(usize, Vec<f64>)> {
         let Controls { blocks, squares, products } = &self.controls;
         let first = layout.sensor_slots().start;
-        let emitted = total(&self.groups, layout.emitted_slots());
+        let emitted = self.total(layout.emitted_slots());
         let least = (ROUNDING * emitted).powi(2) / *blocks as f64;
         let kinds = layout.control_slots().zip(squares.iter().zip(products));
         let happened = kinds.filter(|(_, (square, _))| **square > least);
@@ -75,25 +79,13 @@ impl Readings {
     }
 }
 
-/// Sum of some slots over all groups.
-fn total(groups: &[Group], slots: impl Iterator<Item = usize>) -> f64 {
-    slots.map(|slot| groups.iter().map(|group| group.sums[slot]).sum::<f64>()).sum()
-}
-
-/// Variance of the mean flux in some slots, from groups.
-fn variance(groups: &[Group], slots: &[usize]) -> f64 {
-    let mean = |group: &Group| {
-        slots.iter().map(|&slot| group.sums[slot]).sum::<f64>() / group.batches as f64
-    };
-    Tally::of(groups.iter().map(mean)).std_error().powi(2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::measure::samples::{rectangle, scene};
     use crate::rng::{Dimension, Sampler};
     use crate::scene::SourceId;
+    use crate::tally::Tally;
     use crate::transport::tally::controls::Blocks;
 
     /// Paths of a batch, in blocks of one.

@@ -5,7 +5,7 @@
 //! before. So the mean of F - Σ βⱼ Cⱼ is that of F, with F the flux on a sensor and Cⱼ the sum of the surprises of one kind:
 //! those of light from one source at one side of a face, or at roulette. Surprises of different choices are uncorrelated, as
 //! each has a mean of zero given all before it, so βⱼ = Cov(F, Cⱼ)/Var(Cⱼ) leaves the least variance (docs/theory.md,
-//! eq. 39). The slopes β come from blocks of paths, of which there are so many that their noise hardly counts. What is best for
+//! eq. 39). The slopes β come from blocks of paths; there are so many blocks that noise of the slopes hardly counts. What is best for
 //! independent blocks need not be best for the evenly spread points of a batch (Hickernell, Lemieux & Owen, Stat. Sci. 20
 //! (2005) 1), so the groups of batches decide whether a sensor is adjusted (`adjusted`).
 
@@ -58,7 +58,7 @@ impl Controls {
     }
 }
 
-/// Adds numbers to others, of which there may be fewer.
+/// Adds numbers one by one to others; a list that is too short is filled up with zeros.
 fn add_all(own: &mut Vec<f64>, others: &[f64]) {
     own.resize(own.len().max(others.len()), 0.0);
     own.iter_mut().zip(others).for_each(|(own, other)| *own += other);

@@ -186,8 +186,13 @@ impl Readings {
     /// The scalars of all groups except one, without cells.
     pub(crate) fn without_group(&self, left_out: u64) -> Self {
         let kept = self.groups.iter().filter(|group| group.group != left_out);
+        self.with_groups(kept.cloned().collect())
+    }
+
+    /// The scalars of other groups, without cells.
+    pub(super) fn with_groups(&self, groups: Vec<Group>) -> Self {
         Self {
-            groups: kept.cloned().collect(),
+            groups,
             sensors: Vec::new(),
             controls: Controls::default(),
             leaks: Vec::new(),

@@ -7,7 +7,7 @@ mod traced;
 use lumiduct_core::measure::{MapAxes, Measures};
 use lumiduct_core::plan::Request;
 use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::{Arrivals, SensorId, SensorKind};
+use lumiduct_core::scene::{Arrivals, PolarLaw, SensorId, SensorKind};
 use lumiduct_input::Settings;
 use std::f64::consts::PI;
 
@@ -230,4 +230,104 @@ fn starts_lie_in_their_cells_and_represent_the_whole_of_them() {
             assert!(is_cut || std_error < 1e-6 * expected, "{} {cell}", sensor.name);
         }
     }
+}
+
+#[test]
+fn starts_at_learned_angles_represent_half_spaces() {
+    const DRAWS: u64 = 40_000;
+    let text = format!(
+        "{TUBE}both = {{ plane = {{ cells = [3, 2] }}, on = \"tube.wall\", counts = \"incident\", side = \"both\" }}\n\
+         leaving = {{ plane = {{ cells = [3, 2] }}, on = \"tube.wall\", counts = \"leaving\", side = \"back\" }}\n"
+    );
+    let job = traced::load(&text, &Settings::default());
+    let beam = std::array::from_fn(|bin| 0.5f64.powi(bin as i32));
+    let learned = PolarLaw::learned(&[beam; 2]);
+    assert!(matches!(learned, PolarLaw::Learned(_)));
+    for (id, sensor) in job.scene.sensors.iter().enumerate() {
+        for law in [PolarLaw::EvenBins, learned.clone()] {
+            let mut arrivals = Arrivals::new(&job.scene, SensorId::new(id));
+            arrivals.set_polar(law);
+            let sees_half_spaces = !["views", "far"].contains(&sensor.name.as_str());
+            assert_eq!(arrivals.see_half_spaces(), sees_half_spaces, "{}", sensor.name);
+            if !sees_half_spaces {
+                continue;
+            }
+            let area = match &sensor.kind {
+                SensorKind::Surface(surface) => surface.areas.iter().sum::<f64>(),
+                SensorKind::Goniometer(_) => 4.0 * PI * 60.0f64.powi(2),
+            };
+            let sides = if sensor.name == "both" { 2.0 } else { 1.0 };
+            // ∫ cos θ dω = π and ∫ cos³ θ dω = π/2 over a half space.
+            let mut sums = [[0.0; 2]; 2];
+            for draw in 0..DRAWS {
+                let mut sampler = Sampler::for_path(id as u64, 0, draw);
+                let Some(start) = arrivals.draw(&mut sampler) else { continue };
+                let cos = start.ray.dir().dot(start.normal);
+                add(&mut sums[0], start.extent);
+                add(&mut sums[1], start.extent * cos * cos);
+            }
+            for (sums, expected) in sums.into_iter().zip([PI, 0.5 * PI]) {
+                let expected = sides * area * expected;
+                let [mean, std_error] = mean(sums, DRAWS);
+                assert!((mean - expected).abs() < 4.0 * std_error, "{}: {mean}", sensor.name);
+                assert!(std_error < 0.02 * expected, "{}: ± {std_error}", sensor.name);
+            }
+        }
+    }
+}
+
+/// A mirror tube of aspect 100 behind a disk that fills its entry.
+const LONG_TUBE: &str = r#"
+[finishes.mirror]
+specular = { reflectance = 0.95 }
+[sheets.duct.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 1000 }]
+finish = "mirror"
+[sources.led.disk]
+radius_mm = 5
+at = { face = "duct.entry" }
+flux_lm = 1
+[sensors]
+exit = { plane = { cells = [4, 4] }, on = "duct.exit", counts = "leaving" }
+"#;
+/// Its exit flux, lm: closed form after Swift & Smith, Sol. Energy Mater. Sol. Cells 36 (1995) 159.
+const LONG_TUBE_FLUX: f64 = 0.044_426_15;
+
+#[test]
+fn gather_paths_learn_at_which_angles_light_leaves_a_long_tube() {
+    const SEEDS: u64 = 30;
+    let (mut sigmas, mut of_flux, mut of_cells) = (Vec::new(), Vec::new(), Vec::new());
+    for seed in 0..SEEDS {
+        let settings = Settings {
+            paths: Some(65_536),
+            estimator: Some(Request::Backward),
+            seed: Some(seed),
+            ..Settings::default()
+        };
+        let mut job = traced::load(LONG_TUBE, &settings);
+        job.run.stop.batches = Some(64);
+        let found = traced::measures(&job);
+        let flux = &found.values["exit.flux"];
+        sigmas.push((flux.value - LONG_TUBE_FLUX) / flux.std_error);
+        of_flux.push(flux.std_error / flux.value);
+        let map = &found.maps[0];
+        let [errors, values] = [&map.std_errors, &map.values]
+            .map(|all| root_mean_square(&all.iter().copied().collect::<Vec<f64>>()));
+        of_cells.push(errors / values);
+    }
+    let [of_flux, of_cells] = [of_flux, of_cells].map(|errors: Vec<f64>| root_mean_square(&errors));
+    // By the cosine law they are 7.5e-4 and 4.5e-3.
+    assert!(of_flux < 4e-4 && of_cells < 2e-3, "{of_flux}, {of_cells}");
+    let spread = root_mean_square(&sigmas);
+    assert!((0.7..1.3).contains(&spread), "{spread}: {sigmas:?}");
+}
+
+#[test]
+fn what_gather_paths_learn_is_the_same_on_any_number_of_threads() {
+    let found = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| estimates(&measures(LONG_TUBE, Request::Backward, (1, 1024))))
+    });
+    assert_eq!(found[0], found[1]);
 }

@@ -65,4 +65,5 @@ pub use source::sky::{EmitterKind, Sky};
 pub use source::{EmitSide, Emitted, Emitter, Source, StartSolids, SunAngles};
 pub use start::area::{AreaPoint, FaceArea};
 pub use start::arrivals::{Arrival, Arrivals, Begins};
+pub use start::polar::{PolarLaw, PolarSquares};
 pub use start::strata::Strata;

@@ -9,10 +9,14 @@ use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::crossing::hit::StartSide;
 use crate::scene::shape::Toward;
 use crate::scene::start::area::{AreaPoint, FaceArea};
+use crate::scene::start::directions::{
+    Drawn, away, projected_toward, toward, view_direction, views_projected,
+};
+use crate::scene::start::polar::{PolarLaw, bin};
 use crate::scene::start::strata::{DrawnDirection, Strata, direction, numbers_in_pixel};
 use crate::scene::{
     CountedLight, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind,
-    Sides, SurfaceSensor, Views,
+    Sides, SurfaceSensor,
 };
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk};
@@ -61,6 +65,8 @@ pub struct Arrivals<'s> {
     place: StartSet<'s>,
     /// The faces through which the sensor is lit, if it names any that matter.
     aim: Option<FaceArea<'s>>,
+    /// Angles to the normal of a sensor that sees half spaces.
+    polar: PolarLaw,
 }
 
 /// The set from which gather paths start.
@@ -76,6 +82,13 @@ enum StartSet<'s> {
 struct Around {
     center: DVec3,
     radius: f64,
+}
+
+impl Arrival {
+    /// The bin of its angle to the normal, of those of a law that is learned.
+    pub fn polar_bin(&self) -> usize {
+        bin(sin_squared(&self.ray, self.normal))
+    }
 }
 
 impl<'s> Arrivals<'s> {
@@ -96,7 +109,26 @@ impl<'s> Arrivals<'s> {
             SensorKind::Goniometer(_) => true,
         };
         let aim = (aimed && !sensor.aim.is_empty()).then(|| FaceArea::new(scene, &sensor.aim));
-        Self { scene, place, aim }
+        Self { scene, place, aim, polar: PolarLaw::Cosine }
+    }
+
+    /// Sets the law of the angles to the normal, which is the cosine law at first.
+    pub fn set_polar(&mut self, polar: PolarLaw) {
+        self.polar = polar;
+    }
+
+    /// Density of a start by the cosine law over that by the law that it was drawn by.
+    pub fn polar_reciprocal(&self, start: &Arrival) -> f64 {
+        self.polar.reciprocal(sin_squared(&start.ray, start.normal))
+    }
+
+    /// Whether starts lie in all directions of a half space, so that the law of their angles matters.
+    pub fn see_half_spaces(&self) -> bool {
+        let sees_all = match &self.place {
+            StartSet::Surface(sensor, _) => matches!(sensor.seeing, Seeing::All),
+            StartSet::Sphere(goniometer, _) => goniometer.radius.is_some(),
+        };
+        sees_all && self.aim.is_none()
     }
 
     /// The strata of the draws: the values of the sensor, as far as starts can be drawn for one of them.
@@ -166,7 +198,10 @@ impl<'s> Arrivals<'s> {
                 Some(radius) => {
                     let out = (ray.origin() - goniometer.frame.origin) / radius;
                     let aimed = self.aim.as_ref();
-                    let projected = aimed.map_or(PI, |aim| projected_toward(aim, ray, out));
+                    let projected = aimed.map_or_else(
+                        || self.half_space(ray, out),
+                        |aim| projected_toward(aim, ray, out),
+                    );
                     4.0 * PI * radius * radius * projected
                 }
             },
@@ -183,10 +218,22 @@ impl<'s> Arrivals<'s> {
             (Seeing::Pixels(pixels), _) => pixels.projected_toward(ray.dir()),
             (Seeing::All, Some(aim)) => projected_toward(aim, ray, normal),
             (Seeing::All, None) => match sensor.sides {
-                Sides::Front | Sides::Back => PI,
-                Sides::Both => 2.0 * PI,
+                Sides::Front | Sides::Back => self.half_space(ray, normal),
+                Sides::Both => 2.0 * self.half_space(ray, normal),
             },
         }
+    }
+
+    /// |cos θ| over the density of a direction of a half space, sr.
+    fn half_space(&self, ray: &Ray, normal: DVec3) -> f64 {
+        PI * self.polar.reciprocal(sin_squared(ray, normal))
+    }
+
+    /// A direction of the half space about an axis.
+    fn direction(&self, axis: DVec3, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
+        let [u, turn] = sampler.pair(Dimension::GatherDirection);
+        let local = cosine_hemisphere([self.polar.draw(u), turn]);
+        Frame::from_axis(DVec3::ZERO, axis).to_world(local)
     }
 
     /// The reciprocal of the density over area with which a ray of a far field is drawn, mm².
@@ -229,8 +276,7 @@ impl<'s> Arrivals<'s> {
         // Arriving light comes from the side that counts; leaving light goes to it.
         let outward = front == (sensor.counts == CountedLight::Incident);
         let axis = if outward { start.normal } else { -start.normal };
-        let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
-        let dir = Frame::from_axis(DVec3::ZERO, axis).to_world(local);
+        let dir = self.direction(axis, sampler);
         let projected = self.surface_projected(sensor, &Ray::new(start.point, dir), start.normal);
         Some(Drawn { dir, projected, views: SmallVec::new() })
     }
@@ -313,9 +359,9 @@ impl<'s> Arrivals<'s> {
                 toward(aim, &start, target.point).filter(|drawn| drawn.dir.dot(out) < 0.0)?
             }
             None => {
-                let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
-                let dir = Frame::from_axis(DVec3::ZERO, -out).to_world(local);
-                Drawn { dir, projected: PI, views: SmallVec::new() }
+                let dir = self.direction(-out, sampler);
+                let projected = self.half_space(&Ray::new(start.point, dir), out);
+                Drawn { dir, projected, views: SmallVec::new() }
             }
         };
         let extent = solid_angle * radius * radius * projected;
@@ -338,56 +384,9 @@ impl<'s> Arrivals<'s> {
     }
 }
 
-/// A direction drawn at a point of a sensor.
-struct Drawn {
-    dir: DVec3,
-    /// |cos θ| over the density of the direction, sr.
-    projected: f64,
-    /// The views or the pixel that accept it.
-    views: SmallVec<[usize; 1]>,
-}
-
-/// |cos θ| over the density with which points drawn from the aim lie in the ray's direction, sr.
-fn projected_toward(aim: &FaceArea<'_>, ray: &Ray, normal: DVec3) -> f64 {
-    ray.dir().dot(normal).abs() / aim.density_toward(ray)
-}
-
-/// The direction toward a point drawn from the aim: density `p(y) dist²/cos θ_y`, whichever point
-/// of the aim lies in that direction.
-fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn> {
-    let offset = target - start.point;
-    if offset == DVec3::ZERO {
-        return None;
-    }
-    let ray = Ray::new(start.point, offset);
-    let projected = projected_toward(aim, &ray, start.normal);
-    projected.is_finite().then(|| Drawn { dir: ray.dir(), projected, views: SmallVec::new() })
-}
-
-/// A direction in the acceptance cone of a view, or of any, shared by all cones that contain it.
-fn view_direction(
-    (views, view): (&Views, Option<usize>),
-    counts: CountedLight,
-    start: &AreaPoint,
-    sampler: &mut Sampler<impl Numbers>,
-) -> Drawn {
-    let (seen, accepting) = views.draw(view, sampler);
-    let dir = away(seen, counts);
-    let projected = views_projected(views, accepting.len(), dir.dot(start.normal));
-    Drawn { dir, projected, views: accepting }
-}
-
-/// |cos θ| over the density of a direction that this many views accept, sr.
-fn views_projected(views: &Views, accepting: usize, cos: f64) -> f64 {
-    cos.abs() / views.density(accepting)
-}
-
-/// Converts between a direction against the light and a view's direction away from the face.
-fn away(dir: DVec3, counts: CountedLight) -> DVec3 {
-    match counts {
-        CountedLight::Incident => dir,
-        CountedLight::Leaving => -dir,
-    }
+/// sin² of the angle between a ray and a normal.
+fn sin_squared(ray: &Ray, normal: DVec3) -> f64 {
+    (1.0 - ray.dir().dot(normal).powi(2)).max(0.0)
 }
 
 fn around(scene: &Scene) -> Around {

@@ -2,6 +2,8 @@
 
 pub(crate) mod area;
 pub(crate) mod arrivals;
+mod directions;
 pub(crate) mod emit;
+pub(crate) mod polar;
 mod spectral;
 pub(crate) mod strata;

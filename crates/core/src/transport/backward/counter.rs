@@ -22,8 +22,10 @@ pub(crate) struct GatherPathCounter<'a, 's> {
     pub(crate) arrival: &'a Arrival,
     /// Etendue of this path per basic radiance, its share of the batch, mm² sr.
     pub(crate) etendue: f64,
-    /// Gather paths of the sensor in the batch.
-    pub(crate) paths: u64,
+    /// Basic radiance that it has found, with its shares.
+    pub(crate) radiance: f64,
+    /// Its share of what the gather paths of the sensor in the batch represent, 1.
+    pub(crate) share: f64,
     pub(crate) id: SensorId,
     /// Mixed: flux of one photon of each source, lm or W.
     pub(crate) photon_fluxes: Option<&'a [f64]>,
@@ -97,7 +99,7 @@ impl GatherPathCounter<'_, '_> {
         let first = self.turns.first(dir);
         let etendues = self.etendues(&place, met.emitted, joined, (first, windows));
         let weight = etendues.share(Technique::GatherPath, self.backward.sharing);
-        self.count(path.depth, met.source, weight * met.radiance * self.etendue);
+        self.count(path.depth, met.source, weight * met.radiance);
     }
 
     /// Joins a vertex to a source: docs/method.md, eq. (26).
@@ -131,7 +133,7 @@ impl GatherPathCounter<'_, '_> {
         let etendues = self.etendues(&place, emitted, joined, (first, windows));
         let weight = etendues.share(Technique::JoinedGatherPath, self.backward.sharing);
         let radiance = path.throughput * light.adjoint * emitted * measure * end.transmittance;
-        self.count(path.depth + 1, place.source, weight * radiance * self.etendue / kept);
+        self.count(path.depth + 1, place.source, weight * radiance / kept);
     }
 
     /// Etendues of light from a place that this path has found; `joined` is that of a path joined
@@ -171,19 +173,16 @@ impl GatherPathCounter<'_, '_> {
         }
     }
 
-    fn count(&mut self, depth: u32, source: SourceId, flux: f64) {
+    fn count(&mut self, depth: u32, source: SourceId, radiance: f64) {
+        self.radiance += radiance;
+        let flux = radiance * self.etendue;
         let Backward { layout, scene, .. } = self.backward;
         let light = DetectedLight { flux, depth, source, wavelength: self.arrival.wavelength };
         self.readings.count((layout, &scene.light), self.id, &self.arrival.cells, &light);
     }
 
     fn lose(&mut self, throughput: f64, loss: Loss) {
-        self.readings.count_lost(
-            &self.backward.layout,
-            self.id,
-            throughput / self.paths as f64,
-            loss,
-        );
+        self.readings.count_lost(&self.backward.layout, self.id, throughput * self.share, loss);
     }
 }
 

@@ -8,8 +8,9 @@
 
 use crate::plan::{Estimator, RunPlan};
 use crate::rng::{Points, Sampler, StratumShares, stream};
-use crate::scene::SensorId;
+use crate::scene::{Arrival, SensorId};
 use crate::transport::backward::counter::GatherPathCounter;
+use crate::transport::backward::learning::LEARNING;
 use crate::transport::backward::paths::{Backward, Weights};
 use crate::transport::connect::vertex::Turns;
 use crate::transport::estimate::Estimate;
@@ -24,7 +25,8 @@ use rayon::prelude::*;
 
 /// Batch of the pilot paths: not one that counts.
 const PILOT_BATCH: u64 = 1 << 40;
-
+/// Most work of a trial from which angles are learned, over all of it, 1.
+const LEARNING_SHARE: f64 = 0.125;
 /// Standard errors of both by which photons must find more than gather paths to contradict them.
 const CONTRADICTED: f64 = 4.0;
 /// Possible relative rounding of a flux.
@@ -42,6 +44,16 @@ impl<'s> Backward<'s> {
     /// Traces the gather paths of a batch. It is not closed, since photons may contribute to it.
     /// `None` if it was stopped.
     pub(crate) fn trace(&self, task: Task<'_>) -> Option<Readings> {
+        self.trace_watched(task, &mut |_, _, _| ())
+    }
+
+    /// The same; `watch` is shown each path: the place of its sensor among the sensors, its start, and the basic
+    /// radiance that it found.
+    pub(crate) fn trace_watched(
+        &self,
+        task: Task<'_>,
+        watch: &mut impl FnMut(usize, &Arrival, f64),
+    ) -> Option<Readings> {
         let Task { batch, pace, .. } = task;
         let mut readings =
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
@@ -59,7 +71,7 @@ impl<'s> Backward<'s> {
                     (sensor, &mut points),
                     (place, shares),
                     (task, &mut joints),
-                    &mut readings,
+                    (&mut readings, watch),
                 );
             }
         }
@@ -71,7 +83,7 @@ impl<'s> Backward<'s> {
         (sensor, points): (usize, &mut Points),
         (place, shares): (u64, StratumShares),
         (task, joints): (Task<'_>, &mut Sampler),
-        readings: &mut Readings,
+        (readings, watch): (&mut Readings, &mut impl FnMut(usize, &Arrival, f64)),
     ) {
         let (id, arrivals) = (self.sensors[sensor].0, &self.sensors[sensor].1);
         let index = task.batch * shares.paths + place;
@@ -101,7 +113,8 @@ impl<'s> Backward<'s> {
             backward: self,
             arrival: &arrival,
             etendue: etendue / shares.paths as f64,
-            paths: shares.paths,
+            radiance: 0.0,
+            share: arrivals.polar_reciprocal(&arrival) / shares.paths as f64,
             id,
             photon_fluxes,
             batches: 1.0,
@@ -111,6 +124,7 @@ impl<'s> Backward<'s> {
             readings,
         };
         let segments = follow(gathering, &arrival, &mut sampler, &mut counter);
+        watch(sensor, &arrival, counter.radiance);
         readings.segments += segments;
     }
 }
@@ -138,12 +152,15 @@ pub(crate) fn tried_batches(
     TriedBatches { batches, work: by_photons + by_paths, work_of_one, strata }
 }
 
-/// Tries gather paths that meet the sources; `None` if stopped.
+/// Tries gather paths that meet the sources; `None` if stopped. Both sizes start at the angles that are learned once.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
+    let (backward, of_path) = paths_for(trials, trials.effort)?;
+    let laws = backward
+        .learned_laws(LEARNING.min(LEARNING_SHARE * trials.effort) / of_path, trials.signal)?;
     trials.by_size(Estimator::Backward, |effort| {
         let (backward, of_path) = paths_for(trials, effort)?;
         let of_run = |strata| trials.sizes.gather_paths(of_path, strata);
-        let backward = backward.in_cells().trying(of_run);
+        let backward = backward.with_laws(&laws).in_cells().trying(of_run);
         let traced = |batch| {
             let pace = Pace::new(trials.signal);
             let mut readings =

@@ -3,5 +3,6 @@
 
 pub(crate) mod counter;
 pub(crate) mod estimator;
+pub(crate) mod learning;
 pub(crate) mod mix;
 pub(crate) mod paths;

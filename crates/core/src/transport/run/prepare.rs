@@ -2,6 +2,7 @@
 
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
+use crate::transport::backward::learning::LEARNING;
 use crate::transport::backward::paths::{Backward, Weights};
 use crate::transport::batches::{BatchSizes, EQUAL_SHARE, LEAST_SHARE, usual_batch};
 use crate::transport::choose::pilot::choose;
@@ -140,11 +141,19 @@ fn backward<'s>(
     let of_path = new(&all).work_of_path(signal)?;
     let paths = (work / of_path / all.len() as f64) as u64;
     let [alone, mixed] = followed;
-    let alone =
-        (!alone.is_empty()).then(|| Prepared::Backward(new(alone).in_cells().with_paths(paths)));
-    let mixed = (!mixed.is_empty())
-        .then(|| Prepared::Mix(new(mixed).with_paths(paths).with_weights(Weights::Shared)));
-    Some((alone.into_iter().chain(mixed).collect(), of_path))
+    let mut prepared = Vec::new();
+    if !alone.is_empty() {
+        let own = new(alone).in_cells().with_paths(paths);
+        // The same however long the run is, so that one that is continued has the same paths.
+        let laws = own.learned_laws(LEARNING / of_path, signal)?;
+        let own = own.with_laws(&laws);
+        prepared.push(Prepared::Backward(own));
+    }
+    if !mixed.is_empty() {
+        let own = new(mixed).with_paths(paths).with_weights(Weights::Shared);
+        prepared.push(Prepared::Mix(own));
+    }
+    Some((prepared, of_path))
 }
 
 /// Gather paths from sensors that are gathered alone, and merged, with their settings; `None` if

@@ -57,8 +57,26 @@ struct MetFacet {
 }
 
 impl FinishModel for Microfacet {
+    /// Integrals over the visible facets, to 4e-3.
     fn shares(&self, incidence: &Incidence) -> Shares {
-        self.sides(incidence).0
+        if self.is_nothing(incidence) {
+            return Shares { reflected: 0.0, transmitted: 1.0 };
+        }
+        let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(FACETS);
+        let mut flux = [0.0; 2];
+        for cell in 0..FACETS * FACETS {
+            // Steep facets are few, and light is totally reflected there.
+            let steep = middle(cell / FACETS);
+            let weight = 3.0 * steep * steep / f64::from(FACETS * FACETS);
+            let facet = self.seen(incidence, [1.0 - steep.powi(3), middle(cell % FACETS)]);
+            let shares = self.of_facet(&facet, incidence);
+            for (flux, side) in flux.iter_mut().zip([Side::Reflected, Side::Transmitted]) {
+                let sent = self.sent(&facet, side, incidence, shares.of(side));
+                *flux += sent.map_or(0.0, |out| weight * out.factor);
+            }
+        }
+        let [reflected, transmitted] = flux;
+        Shares { reflected, transmitted }
     }
 
     fn scatter(
@@ -105,8 +123,15 @@ impl FinishModel for Microfacet {
         self.of_facet(&level, incidence).sum()
     }
 
+    /// About those of a facet without tilt, leaving out no side.
     fn chances(&self, incidence: &Incidence) -> Shares {
-        self.sides(incidence).1
+        match self.facets {
+            FacetKind::Interface if self.is_nothing(incidence) => self.shares(incidence),
+            FacetKind::Interface => SmoothInterface::chances_about(&incidence.unpolarised()),
+            FacetKind::Mirror { .. } | FacetKind::Metal { .. } => {
+                Shares { reflected: 1.0, transmitted: 0.0 }
+            }
+        }
     }
 
     /// Where it has no effect, light keeps its polarisation.
@@ -160,33 +185,6 @@ impl Microfacet {
     /// Whether light can only pass through it, unbent: facets between equal indices have no effect.
     fn is_nothing(&self, incidence: &Incidence) -> bool {
         self.facets == FacetKind::Interface && incidence.index_from == incidence.index_to
-    }
-
-    /// The shares of the two sides, and the probabilities with which light goes there: integrals
-    /// over the visible facets, to 4e-3.
-    fn sides(&self, incidence: &Incidence) -> (Shares, Shares) {
-        if self.is_nothing(incidence) {
-            let through = Shares { reflected: 0.0, transmitted: 1.0 };
-            return (through, through);
-        }
-        let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(FACETS);
-        let (mut flux, mut chance) = ([0.0; 2], [0.0; 2]);
-        for cell in 0..FACETS * FACETS {
-            // Steep facets are few, and light is totally reflected there.
-            let steep = middle(cell / FACETS);
-            let weight = 3.0 * steep * steep / f64::from(FACETS * FACETS);
-            let facet = self.seen(incidence, [1.0 - steep.powi(3), middle(cell % FACETS)]);
-            let shares = self.of_facet(&facet, incidence);
-            let sum = shares.sum();
-            for (k, side) in [Side::Reflected, Side::Transmitted].into_iter().enumerate() {
-                let share = shares.of(side);
-                let Some(out) = self.sent(&facet, side, incidence, share) else { continue };
-                flux[k] += weight * out.factor;
-                chance[k] += if share > 0.0 { weight * share / sum } else { 0.0 };
-            }
-        }
-        let of = |[reflected, transmitted]: [f64; 2]| Shares { reflected, transmitted };
-        (of(flux), of(chance))
     }
 
     fn draw(&self, incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> MetFacet {

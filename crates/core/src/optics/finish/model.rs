@@ -66,8 +66,8 @@ pub trait FinishModel {
     }
 
     /// Probabilities with which [`FinishModel::scatter`] sends light that it does not absorb to the
-    /// two sides, 1; both are 0 where it always absorbs. The parts of a mixture count by their
-    /// weights.
+    /// two sides, 1; the parts of a mixture count by their weights. They only serve as weights, so where
+    /// [`FinishModel::shares`] takes long they are approximate, but not 0 for a side that light takes.
     fn chances(&self, incidence: &Incidence) -> Shares {
         let shares = self.shares(incidence);
         let sum = shares.sum();

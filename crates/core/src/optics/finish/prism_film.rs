@@ -9,6 +9,8 @@ use crate::rng::{Numbers, Sampler};
 
 /// Positions in a period at which the shares are computed; a tip may lie between two of them. 1.
 const PLACES: u32 = 64;
+/// The same for chances, which need not be exact.
+const FEW_PLACES: u32 = 4;
 
 /// A film as light meets it.
 pub(crate) struct MetFilm<'a> {
@@ -50,6 +52,14 @@ impl FinishModel for MetFilm<'_> {
             Side::Transmitted => self.face.opposite(),
         };
         self.film.scatter(met, incidence, sampler).filter(|out| out.side == side)
+    }
+
+    /// From a few places, which may miss a side that little light takes.
+    fn chances(&self, incidence: &Incidence) -> Shares {
+        let shares = self.film.shares(self.face, incidence, FEW_PLACES);
+        let sum = shares.sum();
+        let reflected = if sum > 0.0 { shares.reflected / sum } else { 0.5 }.clamp(0.02, 0.98);
+        Shares { reflected, transmitted: 1.0 - reflected }
     }
 
     /// Whatever the shares are, no side is left out.

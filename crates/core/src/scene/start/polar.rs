@@ -14,10 +14,9 @@ const COSINE_SHARE: f64 = 0.4;
 const LARGEST_RATIO: f64 = 0.75;
 
 /// The law of the angles θ to the normal at which gather paths start.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub enum PolarLaw {
     /// A density in proportion to cos θ.
-    #[default]
     Cosine,
     /// Every bin equally often, to learn what light comes from where.
     EvenBins,

@@ -11,7 +11,7 @@ use crate::rng::{Points, Sampler, StratumShares, stream};
 use crate::scene::{Arrival, SensorId};
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::backward::learning::LEARNING;
-use crate::transport::backward::paths::{Backward, Weights};
+use crate::transport::backward::paths::{Backward, UNCOUNTED_BATCH, Weights};
 use crate::transport::connect::vertex::Turns;
 use crate::transport::estimate::Estimate;
 use crate::transport::stop::{Pace, StopSignal};
@@ -23,8 +23,6 @@ use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Layout, Path, Readings};
 use rayon::prelude::*;
 
-/// Batch of the pilot paths: not one that counts.
-const PILOT_BATCH: u64 = 1 << 40;
 /// Most work of a trial from which angles are learned, over all of it, 1.
 const LEARNING_SHARE: f64 = 0.125;
 /// Standard errors of both by which photons must find more than gather paths to contradict them.
@@ -36,7 +34,7 @@ impl<'s> Backward<'s> {
     /// Work of a gather path, mean of a few that are not counted; `None` if they were stopped.
     pub(crate) fn work_of_path(&self, signal: &StopSignal) -> Option<f64> {
         let pace = Pace::new(signal);
-        let task = Task { batch: PILOT_BATCH, stage: 0, photon_fluxes: &[], pace: &pace };
+        let task = Task { batch: UNCOUNTED_BATCH, stage: 0, photon_fluxes: &[], pace: &pace };
         let traced = self.trace(task)?;
         Some(work::of_gather_paths(self.batch_paths(), &traced) / self.batch_paths() as f64)
     }

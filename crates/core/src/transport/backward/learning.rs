@@ -1,7 +1,7 @@
 //! The angles at which gather paths start, learned before a run from where their light comes.
 
 use crate::scene::{PolarLaw, PolarSquares, SensorId};
-use crate::transport::backward::paths::Backward;
+use crate::transport::backward::paths::{Backward, UNCOUNTED_BATCH};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::task::Task;
 
@@ -11,8 +11,8 @@ pub(crate) const LEARNING: f64 = 1e7;
 const LEAST: u64 = 256;
 /// Most of them.
 const MOST: u64 = 1 << 14;
-/// Batches of the two sets; they do not count.
-const BATCHES: [u64; 2] = [(1 << 40) + 1, (1 << 40) + 2];
+/// Batches of the two sets.
+const BATCHES: [u64; 2] = [UNCOUNTED_BATCH + 1, UNCOUNTED_BATCH + 2];
 
 impl Backward<'_> {
     /// The law of angles of each sensor, learned from at most this many paths of all sensors; the cosine law where these are too few,

@@ -15,6 +15,8 @@ use crate::transport::walk::emitters::Emitters;
 
 /// Gather paths of a batch from each sensor where no number is given: they measure their work.
 const PILOT_PATHS: u64 = 64;
+/// First of the batches that do not count: of pilots, and of learning.
+pub(super) const UNCOUNTED_BATCH: u64 = 1 << 40;
 
 /// Shared data of all batches of a run.
 #[derive(Debug)]

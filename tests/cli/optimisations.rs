@@ -127,7 +127,7 @@ fn a_target_out_of_reach_ends_with_exit_code_1_and_the_reason() {
 
 #[test]
 fn a_killed_optimisation_goes_on_to_the_same_bytes_on_any_number_of_threads() {
-    let place = tube(&STUDY.replace("paths = 400_000", "paths = 3_000_000"));
+    let place = tube(&STUDY.replace("paths = 400_000", "paths = 800_000"));
     place.good("optimise study.toml -o whole --threads 3");
     let mut child = Process::new(env!("CARGO_BIN_EXE_lumiduct"))
         .current_dir(place.0.path())
@@ -153,7 +153,7 @@ fn a_killed_optimisation_goes_on_to_the_same_bytes_on_any_number_of_threads() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_the_best_and_resuming_ends_with_the_same_bytes() {
-    let place = tube(&STUDY.replace("paths = 400_000", "paths = 3_000_000"));
+    let place = tube(&STUDY.replace("paths = 400_000", "paths = 800_000"));
     place.good("optimise study.toml -o whole");
     let mut child = Process::new(env!("CARGO_BIN_EXE_lumiduct"))
         .current_dir(place.0.path())

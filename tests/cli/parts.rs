@@ -23,11 +23,12 @@ fn parts_of_a_run_make_the_report_of_the_whole() {
 #[test]
 fn more_parts_than_batches_leave_some_empty() {
     let place = Place::new();
-    place.good("run rod.toml -o whole");
-    for part in 1..=200 {
-        place.good(&format!("run rod.toml --shard {part}/200 -o parts/{part} -q"));
+    let few = "run rod.toml -D run.batches=16";
+    place.good(&format!("{few} -o whole"));
+    for part in 1..=20 {
+        place.good(&format!("{few} --shard {part}/20 -o parts/{part} -q"));
     }
-    let parts: Vec<String> = (1..=200).map(|part| format!("parts/{part}")).collect();
+    let parts: Vec<String> = (1..=20).map(|part| format!("parts/{part}")).collect();
     place.good(&format!("merge {} -o merged", parts.join(" ")));
     assert_eq!(contents(&place.path("whole")), contents(&place.path("merged")));
 }

@@ -4,7 +4,7 @@ use crate::study::designs::Design;
 use crate::study::execute::{DesignBatch, DesignTracing};
 use lumiduct_base::error::Result;
 use lumiduct_core::plan::Request;
-use lumiduct_input::{Keep, Setting, Settings};
+use lumiduct_input::{Keep, Setting, Settings, Study};
 use lumiduct_report::study::{Confirmation, DesignRecord};
 
 /// Traces the best of some designs again by the estimator of the study and by another; `None` if it was interrupted.
@@ -19,7 +19,7 @@ pub(crate) fn confirmations(
     let setting = |name: &String| best.settings.get(name).cloned().unwrap_or(Setting::AsInScene);
     let settings = batch.study.parameters.iter().map(|own| setting(&own.name)).collect();
     let design = Design { number: best.design, settings };
-    let seed = run.seed.wrapping_add(1);
+    let seed = fresh_seed(batch.study);
     let mut found = Vec::new();
     for estimator in estimators {
         let fresh =
@@ -31,6 +31,11 @@ pub(crate) fn confirmations(
         found.push(Confirmation { seed, estimator: estimator.name().to_owned(), outcome });
     }
     Ok(Some(found))
+}
+
+/// A seed of the random numbers of light that a search has not used.
+pub(crate) fn fresh_seed(study: &Study) -> u64 {
+    study.base.run.seed.wrapping_add(1)
 }
 
 /// An estimator that follows light in another way.

@@ -57,11 +57,11 @@ fn one_at_a_time(parameters: &[Parameter]) -> Vec<Vec<Setting>> {
 fn levels(parameter: &Parameter) -> &[Setting] {
     match &parameter.domain {
         Domain::Levels(levels) => levels,
-        Domain::Uniform { .. } | Domain::Normal { .. } | Domain::Listed => &[],
+        Domain::Uniform { .. } | Domain::Normal { .. } | Domain::Listed | Domain::AsInScene => &[],
     }
 }
 
-fn sampled(parameters: &[Parameter], samples: &[Vec<f64>]) -> Vec<Vec<Setting>> {
+pub(crate) fn sampled(parameters: &[Parameter], samples: &[Vec<f64>]) -> Vec<Vec<Setting>> {
     let row = |sample: &Vec<f64>| {
         let pairs = parameters.iter().zip(sample);
         pairs.map(|(parameter, &share)| quantile(parameter, share)).collect()

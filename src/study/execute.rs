@@ -82,24 +82,28 @@ impl BatchProgress {
 pub(crate) struct DesignBatch<'a> {
     pub(crate) study: &'a Study,
     pub(crate) store: &'a Store,
+    /// Seed of the random numbers of light in place of that of the study.
+    pub(crate) seed: Option<u64>,
     /// Designs in flight at once.
     pub(crate) jobs: usize,
     pub(crate) interrupt: &'a Interrupt,
     pub(crate) watch: &'a (dyn Fn(&BatchProgress) + Sync),
 }
 
-/// Traces those of the wanted designs (numbers from 1) that have no record yet. Ends at the first
-/// file system error or when interrupted; designs finished by then have their records.
+/// Traces those of the wanted designs that have no record yet. All designs are numbered from that of the first without a gap;
+/// records before it are not looked at. Ends at the first file system error or when interrupted; designs finished by then have
+/// their records.
 pub(crate) fn execute(batch: &DesignBatch<'_>, designs: &[Design], wanted: &[usize]) -> Result<()> {
-    let records = batch.store.records()?;
+    let first = designs.first().map_or(1, |design| design.number);
+    let numbered = |number: usize| designs.get(number.checked_sub(first)?);
+    let records = batch.store.records()?.split_off(&first);
     for (number, record) in &records {
-        let design = number.checked_sub(1).and_then(|index| designs.get(index));
-        expect_design(batch, design, record)?;
+        expect_design(batch, numbered(*number), record)?;
     }
     let pending: Vec<&Design> = wanted
         .iter()
         .filter(|number| !records.contains_key(number))
-        .filter_map(|number| designs.get(number - 1))
+        .filter_map(|number| numbered(*number))
         .collect();
     let (next, trouble) = (AtomicUsize::new(0), Mutex::new(None));
     let tracing = DesignTracing::new(batch, [wanted.len(), pending.len()])?;
@@ -169,8 +173,11 @@ impl<'a> DesignTracing<'a> {
     pub(crate) fn new(batch: &'a DesignBatch<'a>, counts: [usize; 2]) -> Result<Self> {
         let study = batch.study;
         let usual = batch_paths(&study.base.scene, &study.base.run);
-        let common =
-            Settings { batch_paths: Some(usual.div_ceil(BATCH_PARTS)), ..study.common.clone() };
+        let common = Settings {
+            batch_paths: Some(usual.div_ceil(BATCH_PARTS)),
+            seed: batch.seed.or(study.common.seed),
+            ..study.common.clone()
+        };
         batch.store.begin_timing()?;
         let board = Board::new(counts, batch);
         board.show();

@@ -12,6 +12,8 @@ mod analysis;
 mod confirm;
 mod designs;
 mod execute;
+mod facts;
+mod production;
 mod sampling;
 mod search;
 mod store;
@@ -19,24 +21,23 @@ mod store;
 pub use execute::{BatchProgress, BestDesign};
 pub use store::OnExisting;
 
-use crate::pipeline::{self, VERSION};
+use crate::pipeline;
+use crate::study::analysis::analysed;
 use crate::study::confirm::confirmations;
 use crate::study::designs::designs;
 use crate::study::execute::{DesignBatch, execute};
+use crate::study::facts::facts;
+use crate::study::production::production;
 use crate::study::search::{ProposalEnd, search};
 use crate::study::store::Store;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Shard};
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::{Problems, name_hint};
-use lumiduct_input::{
-    Cost, Move, Parameter, Plan, Project, Study, StudySettings, Tie, load_study, rewritten_scene,
-};
-use lumiduct_report::study::{
-    DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
-};
-use lumiduct_report::{self as report, Existing, Folder, OutputFile, Written, is_among};
-use std::collections::BTreeSet;
+use lumiduct_input::{Move, Study, StudySettings, load_study, rewritten_scene};
+use lumiduct_report::study::{DesignRecord, StudyFacts, StudyReport, study_files};
+use lumiduct_report::{Existing, Folder, OutputFile, Written, is_among};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// How to run a study.
@@ -100,7 +101,7 @@ pub fn run_study(
     let wanted: Vec<usize> =
         options.shard.of(planned as u64).map(|index| index as usize + 1).collect();
     let jobs = options.jobs;
-    let batch = DesignBatch { study: &study, store: &store, jobs, interrupt, watch };
+    let batch = DesignBatch { study: &study, store: &store, seed: None, jobs, interrupt, watch };
     // A search that runs out of designs ends with fewer.
     let planned = match (study.plan.search(), &study.ranking) {
         (Some(plan), Some(ranking)) => match search(&batch, plan, ranking)? {
@@ -113,7 +114,7 @@ pub fn run_study(
         }
     };
     let facts = StudyFacts { designs: planned, ..facts };
-    let records = store.records()?;
+    let records = designs_of(&store, planned)?;
     let wanted = wanted.into_iter().filter(|design| *design <= planned);
     let wanted: Vec<usize> = wanted.collect();
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
@@ -133,18 +134,42 @@ pub fn run_study(
         return Ok(unfinished(done));
     }
     let mut report = analysed(facts.clone(), records.into_values().collect());
-    if let Some(best) = report.best_passing() {
-        let Some(found) = confirmations(&batch, best, planned)? else {
-            // The best is not confirmed yet.
-            write_best_scene(&study, &store, &report)?;
-            return Ok(unfinished([done[0], done[1] + 1]));
-        };
-        report.confirmations = found;
+    if !test_best(&batch, &mut report)? {
+        write_best_scene(&study, &store, &report)?;
+        let open = facts.production_designs.unwrap_or(1);
+        return Ok(unfinished([store.records()?.len(), done[1] + open]));
     }
     interrupt.begin(Activity::Computing);
     let scene = report.best_passing().map(|best| best_scene(&study, &store, best)).transpose()?;
     let written = finish(&store, &report, (&study.text, scene), interrupt)?;
     Ok(FinishedStudy { report: Some(report), written, ..unfinished(done) })
+}
+
+/// The records of the designs up to a number.
+fn designs_of(store: &Store, planned: usize) -> Result<BTreeMap<usize, DesignRecord>> {
+    let mut records = store.records()?;
+    drop(records.split_off(&(planned + 1)));
+    Ok(records)
+}
+
+/// Traces the best design of a search again, and scatters it as production does; returns whether it was not interrupted.
+fn test_best(batch: &DesignBatch<'_>, report: &mut StudyReport) -> Result<bool> {
+    let (Some(best), Some(plan)) = (report.best_passing(), batch.study.plan.search()) else {
+        return Ok(true);
+    };
+    let Some(found) = confirmations(batch, best, report.facts.designs)? else { return Ok(false) };
+    let made = batch
+        .study
+        .production
+        .as_ref()
+        .map(|samples| production(batch, &report.facts, best, samples, plan.designs as usize));
+    let made = match made.transpose()? {
+        Some(None) => return Ok(false),
+        Some(Some(made)) => Some(Box::new(made)),
+        None => None,
+    };
+    (report.confirmations, report.production) = (found, made);
+    Ok(true)
 }
 
 /// Whether a folder contains results of a study.
@@ -220,12 +245,6 @@ fn default_dir(name: &str) -> PathBuf {
     Path::new("reports/studies").join(name)
 }
 
-/// A study whose designs all have records, with what follows from them.
-fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyReport {
-    let analysis = analysis::analysis(&facts, &designs);
-    StudyReport { facts, designs, analysis, confirmations: Vec::new() }
-}
-
 /// Writes the results of a study, with its file and the scene that a search has found.
 fn finish(
     store: &Store,
@@ -288,61 +307,4 @@ fn expect_measures(study: &Study) -> Result<()> {
         problems.error(&Key::of(&["ranking", "measure"]), message).hint(hint);
     }
     problems.finish(&study.places).map(|_| ())
-}
-
-/// What a study is, for its reports.
-fn facts(study: &Study, designs: usize) -> StudyFacts {
-    let run = &study.base.run;
-    let project = study.base.project.clone();
-    let cost = study.cost.is_some().then(|| Cost::NAME.to_owned());
-    StudyFacts {
-        lumiduct_batch: FACTS_FORMAT,
-        version: VERSION.to_owned(),
-        name: study.name.clone(),
-        title: study.title.clone(),
-        description: study.description.clone(),
-        logo: project.as_ref().and_then(|project| project.logo.clone()),
-        project: project.map(|project| Project { logo: None, ..project }),
-        hash: study.hash.clone(),
-        scene: study.base.name.clone(),
-        overrides: study.common.overrides.clone(),
-        plan: match &study.plan {
-            Plan::Grid => PlanFacts::Grid,
-            Plan::OneAtATime => PlanFacts::OneAtATime,
-            Plan::List(_) => PlanFacts::List,
-            Plan::LatinHypercube(samples) => PlanFacts::LatinHypercube(samples.seed),
-            Plan::Sobol(samples) => PlanFacts::Sobol(samples.seed),
-            Plan::Tolerance(samples) => PlanFacts::Tolerance(samples.seed),
-            Plan::Search(plan) => PlanFacts::Search(plan.seed),
-        },
-        designs,
-        seed: run.seed,
-        estimator: run.estimator.name().to_owned(),
-        asked: report::asked(&run.stop),
-        parameters: study.parameters.iter().map(parameter_facts).collect(),
-        measures: study.measures.iter().cloned().chain(cost).collect(),
-        ranking: study.ranking.clone(),
-        checks: study.checks.clone(),
-        keep: study.keep,
-    }
-}
-
-fn parameter_facts(parameter: &Parameter) -> ParameterFacts {
-    let key = |tie: &Tie| {
-        let factor =
-            if tie.factor == 1.0 { String::new() } else { format!(" = {} times it", tie.factor) };
-        let offset = match tie.offset {
-            0.0 => String::new(),
-            offset if tie.factor == 1.0 => format!(" = it plus {offset}"),
-            offset => format!(" plus {offset}"),
-        };
-        format!("{}{factor}{offset}", tie.key)
-    };
-    ParameterFacts {
-        name: parameter.name.clone(),
-        unit: parameter.unit.clone(),
-        keys: parameter.ties.iter().map(key).collect(),
-        domain: parameter.domain.clone(),
-        nominal: parameter.nominal.clone(),
-    }
 }

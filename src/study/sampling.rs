@@ -73,7 +73,7 @@ pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
         Domain::Normal { mean, std_dev, from, to } => {
             Setting::Number(normal([*mean, *std_dev], [*from, *to], share))
         }
-        Domain::Listed => Setting::AsInScene,
+        Domain::Listed | Domain::AsInScene => Setting::AsInScene,
     }
 }
 

@@ -52,6 +52,8 @@ pub(crate) fn search(
 ) -> Result<ProposalEnd> {
     let mut records = batch.store.records()?;
     let most = plan.designs as usize;
+    // Those after them are of production.
+    drop(records.split_off(&(most + 1)));
     let pending = most.saturating_sub(records.len());
     let tracing = DesignTracing::new(batch, [most, pending])?;
     let mut least = f64::INFINITY;
@@ -86,12 +88,13 @@ fn propose(
     plan: &SearchPlan,
     measured: impl FnMut(&Design) -> std::result::Result<f64, ProposalStop>,
 ) -> Result<ProposalEnd> {
-    let start: Vec<f64> = parameters.iter().map(|own| nominal_share(own).unwrap_or(0.5)).collect();
+    let searched = parameters.iter().filter(|own| is_searched(own));
+    let start: Vec<f64> = searched.map(|own| nominal_share(own).unwrap_or(0.5)).collect();
     let known = Rc::new(RefCell::new(Vec::new()));
     let proposed = Proposed {
         parameters,
         most: plan.designs as usize,
-        sides: [vec![0.0; parameters.len()], vec![1.0; parameters.len()]],
+        sides: [vec![0.0; start.len()], vec![1.0; start.len()]],
         measured: RefCell::new(measured),
         known: Rc::clone(&known),
     };
@@ -138,6 +141,11 @@ fn recorded<'r>(
     Ok(record)
 }
 
+/// Whether the search varies a parameter.
+fn is_searched(parameter: &Parameter) -> bool {
+    parameter.domain != Domain::AsInScene
+}
+
 /// Where the value of the scene lies in the range of a parameter, 0..=1; `None` if it is not known or outside.
 fn nominal_share(parameter: &Parameter) -> Option<f64> {
     match (&parameter.domain, parameter.nominal.number()) {
@@ -145,7 +153,11 @@ fn nominal_share(parameter: &Parameter) -> Option<f64> {
             Some((value - from) / (to - from))
         }
         (
-            Domain::Uniform { .. } | Domain::Levels(_) | Domain::Normal { .. } | Domain::Listed,
+            Domain::Uniform { .. }
+            | Domain::Levels(_)
+            | Domain::Normal { .. }
+            | Domain::Listed
+            | Domain::AsInScene,
             _,
         ) => None,
     }
@@ -216,8 +228,12 @@ where
     type Error = ProposalStop;
 
     fn cost(&self, shares: &Vec<f64>) -> std::result::Result<f64, ProposalStop> {
-        let pairs = self.parameters.iter().zip(shares);
-        self.score_of(pairs.map(|(parameter, share)| setting(parameter, *share)).collect())
+        let mut shares = shares.iter();
+        let setting = |parameter: &Parameter| match is_searched(parameter) {
+            true => shares.next().map_or(Setting::AsInScene, |share| setting(parameter, *share)),
+            false => Setting::AsInScene,
+        };
+        self.score_of(self.parameters.iter().map(setting).collect())
     }
 }
 
@@ -259,11 +275,12 @@ mod tests {
             choices: IndexMap::new(),
             nominal: Setting::Number(nominal),
             whole: false,
+            tolerance: None,
         }
     }
 
     fn plan(designs: u32, seed: u64) -> SearchPlan {
-        SearchPlan { designs, seed, cost: IndexMap::new() }
+        SearchPlan { designs, seed, cost: IndexMap::new(), samples: None }
     }
 
     /// The designs of a search for the least of a function, in their order.

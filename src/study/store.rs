@@ -257,7 +257,7 @@ impl Store {
     fn clear(&self) -> Result<()> {
         self.sweep()?;
         let older = Self::facts_in(&self.dir).ok().flatten();
-        let designs = older.map_or(0, |facts| facts.designs).max(self.facts.designs);
+        let designs = older.map_or(0, |facts| facts.records()).max(self.facts.records());
         remove_report(&self.dir)?;
         remove_if_there(&self.dir.join(FACTS))?;
         remove_if_there(&self.dir.join(TIMING))?;

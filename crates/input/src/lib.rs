@@ -78,7 +78,7 @@ pub use project::Project;
 pub use rewrite::{Move, rewritten_scene};
 pub use scatter::measured_sheet;
 pub use spec::optimise::Vary;
-pub use spec::study::{Best, Keep, Ranking, Samples, SearchPlan};
+pub use spec::study::{Best, Keep, Ranking, Samples, SearchPlan, Tolerance};
 pub use study::{
     Cost, DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation,
     OptimisationKind, Parameter, PatternFeedback, Plan, Setting, Study, StudySettings, Tie, column,

@@ -25,6 +25,13 @@ pub(crate) struct PagePart {
     pub(crate) blocks: Vec<Block>,
 }
 
+impl PagePart {
+    /// A part with this heading.
+    pub(crate) fn new(title: &str, blocks: Vec<Block>) -> Self {
+        Self { title: title.to_owned(), blocks }
+    }
+}
+
 /// Something in a part.
 #[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]

@@ -7,10 +7,16 @@ mod ranking;
 mod sensitivity;
 
 use combine::{Term, combine};
-use lumiduct_report::study::{Analysis, DesignRecord, Pairing, Sharpness, StudyFacts};
+use lumiduct_report::study::{Analysis, DesignRecord, Pairing, Sharpness, StudyFacts, StudyReport};
+
+/// A study whose designs all have records, with what follows from them.
+pub(crate) fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyReport {
+    let analysis = analysis(&facts, &designs);
+    StudyReport { facts, designs, analysis, confirmations: Vec::new(), production: None }
+}
 
 /// Everything that follows.
-pub(crate) fn analysis(facts: &StudyFacts, designs: &[DesignRecord]) -> Analysis {
+fn analysis(facts: &StudyFacts, designs: &[DesignRecord]) -> Analysis {
     Analysis {
         ranked: ranking::ranked(facts, designs),
         effects: effects::effects(facts, designs),
@@ -73,6 +79,7 @@ pub(crate) mod testing {
             overrides: Vec::new(),
             plan,
             designs: 0,
+            production_designs: None,
             seed: 1,
             estimator: "forward".into(),
             asked: String::new(),

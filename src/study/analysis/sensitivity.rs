@@ -43,6 +43,7 @@ fn first_order(facts: &StudyFacts, designs: &[DesignRecord], measure: &str) -> O
                 parameter: parameter.name.clone(),
                 value: *value,
                 std_error: *std_error,
+                slope: None,
             })
             .collect(),
     })
@@ -117,40 +118,50 @@ fn regression(facts: &StudyFacts, designs: &[DesignRecord], measure: &str) -> Op
         .filter_map(|design| Some((design, design.measure(measure)?.value)))
         .filter(|(_, value)| value.is_finite())
         .collect();
-    let column = |parameter: &str| -> Option<Vec<f64>> {
+    let column = |parameter: &str| -> Option<Standardised> {
         let numbers: Option<Vec<f64>> = done
             .iter()
             .map(|(design, _)| design.settings.get(parameter).and_then(Setting::number))
             .collect();
         numbers.and_then(|numbers| standardised(&numbers))
     };
-    let columns: Vec<(&str, Vec<f64>)> = facts
+    let columns: Vec<(&str, Standardised)> = facts
         .parameters
         .iter()
         .filter_map(|own| Some((own.name.as_str(), column(&own.name)?)))
         .collect();
     let values = standardised(&done.iter().map(|(_, value)| *value).collect::<Vec<_>>())?;
-    let inputs: Vec<Vec<f64>> = columns.iter().map(|(_, column)| column.clone()).collect();
-    let fit = least_squares(&inputs, &values)?;
+    let inputs: Vec<Vec<f64>> = columns.iter().map(|(_, column)| column.values.clone()).collect();
+    let fit = least_squares(&inputs, &values.values)?;
     let indices = columns.iter().zip(&fit.coefficients).zip(&fit.std_errors);
     Some(Sensitivity {
         measure: measure.to_owned(),
         method: SensitivityMethod::Regression,
         explained: fit.r_squared,
         indices: indices
-            .map(|(((parameter, _), value), std_error)| SensitivityIndex {
+            .map(|(((parameter, column), value), std_error)| SensitivityIndex {
                 parameter: (*parameter).to_owned(),
                 value: *value,
                 std_error: *std_error,
+                slope: Some(
+                    [value, std_error].map(|own| own * values.deviation / column.deviation),
+                ),
             })
             .collect(),
     })
 }
 
-/// Values less their mean, over their standard deviation; `None` where they are all the same.
-fn standardised(values: &[f64]) -> Option<Vec<f64>> {
+/// Values less their mean, over their standard deviation.
+struct Standardised {
+    values: Vec<f64>,
+    deviation: f64,
+}
+
+/// Standardised values; `None` where they are all the same.
+fn standardised(values: &[f64]) -> Option<Standardised> {
     let (mean, deviation) = (Tally::of(values.iter().copied()).mean(), variance(values).sqrt());
-    (deviation > 0.0).then(|| values.iter().map(|value| (value - mean) / deviation).collect())
+    let values = values.iter().map(|value| (value - mean) / deviation).collect();
+    (deviation > 0.0).then_some(Standardised { values, deviation })
 }
 
 fn variance(values: &[f64]) -> f64 {

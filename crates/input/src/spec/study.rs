@@ -52,7 +52,8 @@ pub(crate) struct StudySpec {
 }
 
 /// A quantity that is varied. `grid` and `one_at_a_time` need `values`, `range` or `choices`; `latin_hypercube` and `sobol`
-/// take any of the four; `tolerance` needs `spread` or `choices`; `search` needs `range`; `list` takes values from its file, and here only `choices`.
+/// take any of the four; `tolerance` needs `spread` or `choices`; `search` needs `range`, or `tolerance` for what it leaves as in the scene; `list`
+/// takes values from its file, and here only `choices`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct ParameterSpec {
     /// Keys of the scene that the parameter sets, all at once, such as `solids.pipe.sweep.path.0.straight_mm`.
@@ -69,6 +70,9 @@ pub(crate) struct ParameterSpec {
     pub choices: Option<IndexMap<String, Value>>,
     /// How the values scatter.
     pub spread: Option<SpreadSpec>,
+    /// For a search: how production scatters the value around that of the best design; without a `range`, around that of the scene.
+    /// (The plan `tolerance` takes `spread`.)
+    pub tolerance: Option<Tolerance>,
     /// Whether values are whole numbers, before factors and offsets: `values` and `range` are rounded, a uniform spread
     /// gives every whole number within its ends the same probability, and a normal one is rounded within its limits.
     #[serde(default)]
@@ -154,6 +158,17 @@ pub(crate) struct NormalSpec {
     pub to: Option<f64>,
 }
 
+/// How production scatters a value about the intended one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Tolerance {
+    /// Uniform: every value that differs by no more than this is equally likely. A drawing's ±t that is meant as three standard
+    /// deviations is `std_dev = t/3`.
+    PlusMinus(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// A normal distribution with this standard deviation, not truncated.
+    StdDev(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+}
+
 /// Which designs are made of the parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -189,6 +204,9 @@ pub struct SearchPlan {
     /// It is recorded as the measure `cost`.
     #[serde(default)]
     pub cost: IndexMap<String, f64>,
+    /// Number of simulated parts around the best design, where a parameter has a `tolerance`. Omitted: 100.
+    #[schemars(range(min = 2, max = MOST_DESIGNS))]
+    pub samples: Option<u32>,
 }
 
 /// The designs of a table.

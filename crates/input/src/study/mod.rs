@@ -8,6 +8,7 @@ mod list;
 mod optimisation;
 mod parameters;
 mod rules;
+mod search_rules;
 
 pub use cost::Cost;
 pub use optimisation::feedback::{LawKind, LightTarget, PatternFeedback};
@@ -31,6 +32,9 @@ use serde::Serialize;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Simulated parts around the best design of a search, where no number is given.
+const PRODUCTION_SAMPLES: u32 = 100;
 
 /// Command-line settings in addition to the study file. The field names are part of the identity of
 /// a study.
@@ -103,6 +107,8 @@ pub struct Study {
     pub parameters: Vec<Parameter>,
     /// How designs are made from the parameters.
     pub plan: Plan,
+    /// How the best design of a search is scattered as in production, if any parameter has a tolerance.
+    pub production: Option<Samples>,
     /// Dotted names of the measures that are recorded.
     pub measures: Vec<String>,
     /// What the best design is.
@@ -146,6 +152,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let base = load(&scene, &common).map_err(|error| of_set(error, &spec.set, &places))?;
     let parameters = parameters::lower(&spec, &base, &mut problems);
     rules::check_levels(&parameters, &places, &mut problems);
+    search_rules::check_centers(&parameters, &mut problems);
     rules::check_keys(&parameters, &scene, &common, &mut problems);
     rules::check_clock(&base, &mut problems);
     let rows = table.map(|table| list::rows(&places, table, &parameters, &mut problems));
@@ -159,6 +166,10 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
     let cost = plan.search().and_then(|own| Cost::new(&own.cost, &parameters));
+    let is_scattered = parameters.iter().any(|own| own.tolerance.is_some());
+    let production = plan.search().filter(|_| is_scattered);
+    let production = production
+        .map(|own| Samples { count: own.samples.unwrap_or(PRODUCTION_SAMPLES), seed: own.seed });
     Ok(Study {
         name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
         title: spec.title,
@@ -168,6 +179,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
         common,
         parameters,
         plan,
+        production,
         measures: spec.measures,
         ranking: cost.as_ref().map(|_| Cost::ranking()).or(spec.ranking),
         cost,

@@ -5,7 +5,7 @@ use crate::keys::Key;
 use crate::overrides::parse_key;
 use crate::problems::Problems;
 use crate::spec::study::{
-    NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec, TiedKeySpec, UniformSpec,
+    NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec, TiedKeySpec, Tolerance, UniformSpec,
 };
 use crate::tree::Value;
 use indexmap::IndexMap;
@@ -86,6 +86,8 @@ pub enum Domain {
     },
     /// The values of a table.
     Listed,
+    /// The value of the scene alone.
+    AsInScene,
 }
 
 /// A quantity that is varied.
@@ -105,6 +107,8 @@ pub struct Parameter {
     pub nominal: Setting,
     /// Whether numbers are rounded to whole ones.
     pub whole: bool,
+    /// How production scatters it, if a search is to find that out.
+    pub tolerance: Option<Tolerance>,
 }
 
 impl Parameter {
@@ -133,8 +137,23 @@ impl Parameter {
                 vec![Setting::Number(mean.max(from).min(to))]
             }
             // The values of the table are not known yet: the value of the scene will do.
-            Domain::Listed => vec![self.nominal.clone()],
+            Domain::Listed | Domain::AsInScene => vec![self.nominal.clone()],
         }
+    }
+
+    /// Itself as production scatters it about a setting; without a tolerance it has that setting alone.
+    pub fn scattered(&self, about: &Setting) -> Self {
+        let center = about.number().or(self.nominal.number());
+        let domain = match (center, self.tolerance) {
+            (Some(center), Some(Tolerance::PlusMinus(most))) => {
+                Domain::Uniform { from: center - most, to: center + most }
+            }
+            (Some(mean), Some(Tolerance::StdDev(std_dev))) => {
+                Domain::Normal { mean, std_dev, from: None, to: None }
+            }
+            (_, None) | (None, Some(_)) => Domain::Levels(vec![about.clone()]),
+        };
+        Self { domain, ..self.clone() }
     }
 }
 
@@ -164,6 +183,7 @@ pub(super) fn lower(spec: &StudySpec, base: &Job, problems: &mut Problems) -> Ve
             domain: domain(parameter, &spec.plan),
             choices: choices(parameter, &key.field("choices"), problems),
             whole: parameter.whole,
+            tolerance: parameter.tolerance,
             ties,
         }
     });
@@ -239,7 +259,7 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
         Some(SpreadSpec::Normal(NormalSpec { mean, std_dev, from, to })) => {
             Domain::Normal { mean: *mean, std_dev: *std_dev, from: *from, to: *to }
         }
-        None => Domain::Listed,
+        None => Domain::AsInScene,
     }
 }
 

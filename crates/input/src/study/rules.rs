@@ -4,13 +4,13 @@ use crate::keys::{Key, Places};
 use crate::lower::context::Scope;
 use crate::lower::names::{check_length, check_name, check_title};
 use crate::overrides::parse_key;
-use crate::problems::{Problems, name_hint};
+use crate::problems::Problems;
 use crate::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
     TiedKeySpec,
 };
-use crate::study::cost::Cost;
 use crate::study::parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
+use crate::study::search_rules;
 use crate::texts::argument_label;
 use crate::{Job, Settings, draft};
 use indexmap::IndexMap;
@@ -40,6 +40,7 @@ pub(super) fn check(
         check_name(name, &key, problems);
         check_unit(parameter, &key, problems);
         check_source(places, &spec.plan, &key, problems);
+        search_rules::check_tolerance(parameter, &spec.plan, &key, problems);
         check_room(parameter, &key, problems);
         for (index, tied) in parameter.keys.iter().enumerate() {
             let key = key.field("keys").index(index);
@@ -52,43 +53,7 @@ pub(super) fn check(
     check_set(spec, problems);
     check_overrides(spec, overrides, problems);
     check_count(spec, problems);
-    check_search(spec, problems);
-}
-
-/// Notes a search that does not say what is best, or says it twice.
-fn check_search(spec: &StudySpec, problems: &mut Problems) {
-    let PlanSpec::Search(plan) = &spec.plan else { return };
-    let key = Key::of(&["plan", "search"]);
-    match (&spec.ranking, plan.cost.is_empty()) {
-        (Some(_), true) | (None, false) => {}
-        (None, true) => {
-            problems
-                .error(&key, "a search needs to know which design is the best")
-                .hint("add `[ranking]` with a `measure`, or `cost` with factors of parameters");
-        }
-        (Some(_), false) => {
-            problems
-                .error(&key.field("cost"), "`ranking` already says which design is the best")
-                .hint("leave out `cost`, or replace `[ranking]` by a `[[check]]` on its measure");
-        }
-    }
-    for (name, factor) in
-        plan.cost.iter().filter(|(_, factor)| **factor == 0.0 || !factor.is_finite())
-    {
-        let message = format!("the factor {factor} leaves nothing to compare");
-        problems.error(&key.field("cost").field(name), message).hint("leave it out");
-    }
-    if !plan.cost.is_empty() && spec.measures.iter().any(|name| name == Cost::NAME) {
-        problems
-            .error(&Key::of(&["measures"]), "`cost` is recorded by itself")
-            .hint("leave it out");
-    }
-    for name in plan.cost.keys().filter(|name| !spec.parameters.contains_key(*name)) {
-        let hint = name_hint(name, spec.parameters.keys().map(String::as_str));
-        problems
-            .error(&key.field("cost").field(name), format!("there is no parameter `{name}`"))
-            .hint(hint);
-    }
+    search_rules::check_search(spec, problems);
 }
 
 /// Notes a unit that is invalid for a column.
@@ -156,6 +121,7 @@ fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Prob
     match given.as_slice() {
         [one] if taken.contains(one) => {}
         [] if plan == "list" => {}
+        [] if plan == "search" && places.has(&key.field("tolerance")) => {}
         [] => _ = problems.error(key, "has no values").hint(needs),
         [one] if plan == "list" => {
             problems.error(&key.field(one), "the table of the plan gives the values");

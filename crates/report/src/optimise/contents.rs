@@ -43,10 +43,6 @@ pub(super) fn parts(report: &OptimisationReport) -> [Vec<PagePart>; 2] {
     [before, after.into_iter().flatten().collect()]
 }
 
-fn part(title: &str, blocks: Vec<Block>) -> PagePart {
-    PagePart { title: title.to_owned(), blocks }
-}
-
 /// Before and after, as searched and as checked.
 fn result(report: &OptimisationReport) -> PagePart {
     let words = if report.checks.is_empty() {
@@ -79,7 +75,7 @@ fn result(report: &OptimisationReport) -> PagePart {
     let drawing = " `pattern.dxf` and `pattern.svg` draw the unrolled face in millimetres, seen from outside, with its length upward.";
     let is_drawn = report.shape != crate::optimise::ElementShape::Relief;
     let files = if is_drawn { format!("{files}{drawing}") } else { files.to_owned() };
-    part(
+    PagePart::new(
         "Result",
         vec![
             Block::Words { text: words.to_owned() },
@@ -100,8 +96,9 @@ fn number(own: Uncertain) -> String {
 fn limits(report: &OptimisationReport) -> Option<PagePart> {
     let words = "At these places a limit or a bridge holds the length of the result, within 1 %.";
     let list = Block::List { items: report.active_limits.clone() };
-    (!report.active_limits.is_empty())
-        .then(|| part("Limits that hold", vec![Block::Words { text: words.to_owned() }, list]))
+    (!report.active_limits.is_empty()).then(|| {
+        PagePart::new("Limits that hold", vec![Block::Words { text: words.to_owned() }, list])
+    })
 }
 
 fn lengths(report: &OptimisationReport) -> PagePart {
@@ -117,7 +114,7 @@ fn lengths(report: &OptimisationReport) -> PagePart {
         format!("{} before, mm", report.length),
         format!("{} after, mm", report.length),
     ];
-    part("Lengths at the points of the law", vec![table(&head, rows.collect())])
+    PagePart::new("Lengths at the points of the law", vec![table(&head, rows.collect())])
 }
 
 fn steps(report: &OptimisationReport) -> PagePart {
@@ -133,7 +130,10 @@ fn steps(report: &OptimisationReport) -> PagePart {
     let words = "All steps use the same random numbers. The objective is what the search makes small: the deviations and the light that is \
                  lost, each times its weight. The best step is the one whose objective plus its error is least, of those that reach the \
                  target if any does.";
-    part("Steps", vec![Block::Words { text: words.to_owned() }, table(&head, rows.collect())])
+    PagePart::new(
+        "Steps",
+        vec![Block::Words { text: words.to_owned() }, table(&head, rows.collect())],
+    )
 }
 
 fn settings(report: &OptimisationReport) -> PagePart {
@@ -145,5 +145,5 @@ fn settings(report: &OptimisationReport) -> PagePart {
     )];
     items.extend(report.settings.iter().cloned());
     items.extend(report.overrides.iter().map(|line| format!("set: `{line}`")));
-    part("Settings", vec![Block::List { items }])
+    PagePart::new("Settings", vec![Block::List { items }])
 }

@@ -106,6 +106,9 @@ pub struct SensitivityIndex {
     pub value: f64,
     /// Its standard error, 1.
     pub std_error: f64,
+    /// Of a regression: the change of the measure per unit of the parameter, and its standard error, in their units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope: Option<[f64; 2]>,
 }
 
 /// How many designs of a tolerance run meet a demand.

@@ -27,7 +27,12 @@ pub(super) fn traced_again(report: &StudyReport) -> Option<PagePart> {
     let mut blocks = vec![Block::Words { text: words.into() }, table(&head, rows.collect())];
     let lines = own.map(|own| Block::Words { text: sentence(own) });
     blocks.extend(lines);
-    Some(PagePart { title: "Traced again".to_owned(), blocks })
+    Some(PagePart::new("Traced again", blocks))
+}
+
+/// A measure of the best design with random numbers that the search has not used.
+pub(super) fn of_best<'a>(report: &'a StudyReport, measure: &str) -> Option<&'a Measure> {
+    report.confirmations.first()?.outcome.result()?.measures.get(measure)
 }
 
 /// The words of a confirmation as a sentence.

@@ -3,14 +3,15 @@
 use crate::page::{Block, PagePart, table};
 use crate::study::confirmation::{standing, traced_again};
 use crate::study::edge::edge_remark;
+use crate::study::sampled::{expected_failures, failures, produced, sensitivities};
+use crate::study::settings::{domain_words, setting_word};
 use crate::study::{
-    DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, Sensitivity,
-    SensitivityMethod, StudyReport, ValueWithError,
+    DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, StudyReport, ValueWithError,
 };
 use crate::words::{measured, outcome_word};
-use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_base::number::{format_value, format_with_error};
 use lumiduct_core::measure::CheckOutcome;
-use lumiduct_input::{Best, Domain, Setting};
+use lumiduct_input::{Best, Setting};
 use std::fmt::Write;
 
 /// Errors of a difference above which a design counts as behind the best, 1.
@@ -23,6 +24,7 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
         failures(report),
         ranking(report),
         traced_again(report),
+        produced(report),
         sensitivities(report),
         effects(report),
         Some(designs(report)),
@@ -38,10 +40,6 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
     let first = before.iter().position(has_table).map_or(0, |place| place + 1);
     let after = before.split_off(first);
     [before, after]
-}
-
-fn part(title: &str, blocks: Vec<Block>) -> PagePart {
-    PagePart { title: title.to_owned(), blocks }
 }
 
 /// The outcome, in a sentence.
@@ -67,6 +65,7 @@ pub(super) fn verdict(report: &StudyReport) -> String {
         Some(best) => {
             let again = standing(best, &report.confirmations);
             _ = write!(text, "; the best that passes is design {}{again}", best.design);
+            text += &expected_failures(report);
         }
         None if report.facts.plan.is_search() => {
             text += "; no design passes, so the search found none";
@@ -74,27 +73,6 @@ pub(super) fn verdict(report: &StudyReport) -> String {
         None => {}
     }
     text
-}
-
-fn failures(report: &StudyReport) -> Option<PagePart> {
-    let shares = &report.analysis.failures;
-    let words = "The 95 % interval (Clopper and Pearson) is for the share of all parts produced with these \
-        tolerances. A design that is undecided within its error bar counts as passed for the low end and as \
-        failed for the high end.";
-    let head = ["demand", "passed", "failed", "undecided", "fails", "interval"];
-    let rows = shares.iter().map(|own| {
-        let [low, high] = own.interval.map(format_percent);
-        let share = if own.undecided == 0 {
-            format_percent(own.least)
-        } else {
-            format!("{} to {}", format_percent(own.least), format_percent(own.most))
-        };
-        let counts = [own.passed, own.failed, own.undecided].map(|count| count.to_string());
-        let row = [own.demand.clone()].into_iter().chain(counts);
-        row.chain([share, format!("{low} to {high}")]).collect()
-    });
-    let blocks = vec![Block::Words { text: words.into() }, table(&head, rows.collect())];
-    (!shares.is_empty()).then(|| part("Share of designs that fail", blocks))
 }
 
 fn ranking(report: &StudyReport) -> Option<PagePart> {
@@ -108,7 +86,7 @@ fn ranking(report: &StudyReport) -> Option<PagePart> {
             differences are known more precisely than their values.",
         ranking.measure
     );
-    let labels = report.facts.parameters.iter().map(ParameterFacts::label);
+    let labels = report.facts.varied().map(ParameterFacts::label);
     let head = ["place".to_owned(), "design".to_owned()].into_iter().chain(labels);
     let head: Vec<String> =
         head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
@@ -124,7 +102,7 @@ fn ranking(report: &StudyReport) -> Option<PagePart> {
     blocks.extend(report.best_passing().map(|_| Block::Words { text: last.to_owned() }));
     let is_found = !report.facts.plan.is_search() || report.best_passing().is_some();
     blocks.extend(edge_remark(report).filter(|_| is_found).map(|text| Block::Words { text }));
-    Some(part("Ranking", blocks))
+    Some(PagePart::new("Ranking", blocks))
 }
 
 fn difference(behind: &ValueWithError) -> String {
@@ -139,37 +117,6 @@ fn difference(behind: &ValueWithError) -> String {
     };
     let is_close = behind.value.abs() <= BEHIND_ERRORS * behind.std_error;
     format!("{number}{told}{}", if is_close { ", difference within error" } else { "" })
-}
-
-fn sensitivities(report: &StudyReport) -> Option<PagePart> {
-    let all = &report.analysis.sensitivities;
-    let first = all.first()?;
-    let (words, sum) = match first.method {
-        SensitivityMethod::FirstOrder => (
-            "First-order Sobol indices: the share of the variance over the grid that a parameter causes on \
-                its own. The rest, up to 1, comes from interactions between parameters.",
-            "sum",
-        ),
-        SensitivityMethod::Regression => (
-            "Standardised regression coefficients: how many standard deviations the measure changes when \
-                the parameter changes by one standard deviation. R² is the share of the variance that the \
-                regression explains; where it is small, the coefficients mean little.",
-            "R²",
-        ),
-    };
-    let names = first.indices.iter().map(|index| index.parameter.clone());
-    let head = ["measure".to_owned()].into_iter().chain(names).chain([sum.to_owned()]);
-    let head: Vec<String> = head.collect();
-    let row = |Sensitivity { measure, indices, explained, .. }: &Sensitivity| {
-        let indices = indices.iter().map(|index| match index.std_error.is_finite() {
-            true => format_with_error(index.value, index.std_error),
-            false => format!("{} (error not known)", format_value(index.value)),
-        });
-        [measure.clone()].into_iter().chain(indices).chain([format_value(*explained)]).collect()
-    };
-    let rows = all.iter().map(row).collect();
-    let blocks = vec![Block::Words { text: words.into() }, table(&head, rows)];
-    Some(part("Sensitivity", blocks))
 }
 
 fn effects(report: &StudyReport) -> Option<PagePart> {
@@ -193,21 +140,12 @@ fn effects(report: &StudyReport) -> Option<PagePart> {
         }
     }
     let blocks = vec![Block::Words { text: words.into() }, table(&head, rows)];
-    (!report.analysis.effects.is_empty()).then(|| part("Main effects", blocks))
-}
-
-/// A setting, without its unit.
-pub(super) fn setting_word(setting: &Setting) -> String {
-    match setting {
-        Setting::Number(number) => format_value(*number),
-        Setting::Choice(name) => name.clone(),
-        Setting::AsInScene => "as in the scene".into(),
-    }
+    (!report.analysis.effects.is_empty()).then(|| PagePart::new("Main effects", blocks))
 }
 
 fn designs(report: &StudyReport) -> PagePart {
     let facts = &report.facts;
-    let labels = facts.parameters.iter().map(ParameterFacts::label);
+    let labels = facts.varied().map(ParameterFacts::label);
     let head = ["design".to_owned()].into_iter().chain(labels);
     let head = head.chain(facts.measures.iter().cloned()).chain(["checks".to_owned()]);
     let row = |design: &DesignRecord| {
@@ -227,12 +165,12 @@ fn designs(report: &StudyReport) -> PagePart {
         row.chain(values).chain([verdict]).collect()
     };
     let rows = report.designs.iter().map(row).collect();
-    part("Designs", vec![table(&head.collect::<Vec<_>>(), rows)])
+    PagePart::new("Designs", vec![table(&head.collect::<Vec<_>>(), rows)])
 }
 
 /// The settings of a design as cells of a table.
 fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
-    report.facts.parameters.iter().map(|parameter| setting(parameter, design)).collect()
+    report.facts.varied().map(|parameter| setting(parameter, design)).collect()
 }
 
 /// What a parameter is set to in a design, without its unit.
@@ -251,29 +189,7 @@ fn parameters(report: &StudyReport) -> PagePart {
     let row =
         |own: &ParameterFacts| vec![own.label(), domain_words(&own.domain), own.keys.join(", ")];
     let rows = report.facts.parameters.iter().map(row).collect();
-    part("Parameters", vec![table(&head, rows)])
-}
-
-/// The domain of a parameter, in words.
-fn domain_words(domain: &Domain) -> String {
-    match domain {
-        Domain::Levels(levels) => levels.iter().map(setting_word).collect::<Vec<_>>().join(", "),
-        Domain::Uniform { from, to } => {
-            format!("uniform from {} to {}", format_value(*from), format_value(*to))
-        }
-        Domain::Normal { mean, std_dev, from, to } => {
-            let (mean, std_dev) = (format_value(*mean), format_value(*std_dev));
-            let mut text = format!("normal, mean {mean}, standard deviation {std_dev}");
-            if let Some(from) = from {
-                _ = write!(text, ", not below {}", format_value(*from));
-            }
-            if let Some(to) = to {
-                _ = write!(text, ", not above {}", format_value(*to));
-            }
-            text
-        }
-        Domain::Listed => "from the table".into(),
-    }
+    PagePart::new("Parameters", vec![table(&head, rows)])
 }
 
 /// Remarks of the designs, each listed once.
@@ -297,7 +213,7 @@ fn remarks(report: &StudyReport) -> Option<PagePart> {
         format!("{which}: {warning}")
     };
     let items = told.iter().map(line).collect();
-    (!told.is_empty()).then(|| part("Remarks", vec![Block::List { items }]))
+    (!told.is_empty()).then(|| PagePart::new("Remarks", vec![Block::List { items }]))
 }
 
 fn run(report: &StudyReport) -> PagePart {
@@ -334,5 +250,5 @@ fn run(report: &StudyReport) -> PagePart {
     if !facts.overrides.is_empty() {
         lines.push(format!("set for all designs: {}", facts.overrides.join(", ")));
     }
-    part("Run", vec![Block::List { items: lines }])
+    PagePart::new("Run", vec![Block::List { items: lines }])
 }

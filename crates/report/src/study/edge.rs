@@ -40,7 +40,7 @@ fn edge(parameter: &ParameterFacts, best: &DesignRecord, all: &[DesignRecord]) -
         // end.
         Domain::Uniform { from, to } => ([from, to], (to - from) / all.len() as f64),
         // Production scatter has no edge.
-        Domain::Normal { .. } => return None,
+        Domain::Normal { .. } | Domain::AsInScene => return None,
     };
     let end = if own <= from + part {
         "lower"

@@ -5,8 +5,8 @@ use crate::png::{
     AxisScale, Bar, BarChart, ErrorForm, LinePlot, Look, PlotSeries, ScatterColumn, ScatterMatrix,
     SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
 };
-use crate::study::contents::setting_word;
 use crate::study::edge::numbers_of;
+use crate::study::settings::setting_word;
 use crate::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
@@ -59,6 +59,7 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
         }
     }
     figures.extend(history(report));
+    figures.extend(report.production.iter().flat_map(|made| production(made)));
     for effect in &report.analysis.effects {
         figures.push(Figure {
             file: format!("effect.{}.{}.png", effect.measure, effect.parameter),
@@ -199,6 +200,19 @@ fn history(report: &StudyReport) -> Option<Figure> {
     })
 }
 
+/// Distributions of the measures of the best design of a search, in production.
+fn production(made: &StudyReport) -> Vec<Figure> {
+    let figure = |measure: &String| {
+        let plot = distribution(made, measure)?;
+        Some(Figure {
+            file: format!("production.{measure}.png"),
+            label: format!("distribution of {measure} in production"),
+            drawing: StudyDrawing::Curves(plot, "1".into()),
+        })
+    };
+    made.facts.measures.iter().filter_map(figure).collect()
+}
+
 /// A parameter with its setting in a design: "leg 5 mm".
 pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
@@ -336,7 +350,7 @@ fn scatter(report: &StudyReport) -> ScatterMatrix {
     };
     let measures = report.facts.measures.iter().map(of_measure);
     let columns: Vec<ScatterColumn> =
-        report.facts.parameters.iter().filter_map(of_parameter).chain(measures).collect();
+        report.facts.varied().filter_map(of_parameter).chain(measures).collect();
     let (kinds, kind_of) = if report.facts.checks.is_empty() {
         (vec!["designs".to_owned()], vec![0; designs.len()])
     } else {

@@ -8,6 +8,8 @@ mod figures;
 mod html;
 mod page;
 mod record;
+mod sampled;
+mod settings;
 mod tables;
 mod terminal;
 
@@ -69,7 +71,27 @@ struct StudySummaryRecord<'a> {
     analysis: &'a Analysis,
     #[serde(skip_serializing_if = "<[Confirmation]>::is_empty")]
     confirmations: &'a [Confirmation],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    production: Option<ProductionSummary<'a>>,
     files: Vec<&'a str>,
+}
+
+/// The best design of a search as production scatters it.
+#[derive(Serialize)]
+struct ProductionSummary<'a> {
+    seed: u64,
+    plan: PlanFacts,
+    parameters: &'a [ParameterFacts],
+    rows: Vec<DesignSummaryRow<'a>>,
+    analysis: &'a Analysis,
+}
+
+impl<'a> ProductionSummary<'a> {
+    fn of(made: &'a StudyReport) -> Self {
+        let StudyFacts { seed, plan, parameters, .. } = &made.facts;
+        let rows = made.designs.iter().map(DesignSummaryRow::of).collect();
+        Self { seed: *seed, plan: *plan, parameters, rows, analysis: &made.analysis }
+    }
 }
 
 /// A design without the values of single groups of batches.
@@ -104,10 +126,15 @@ fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<OutputFile> {
     let summary = StudySummaryRecord {
         lumiduct_study_summary: SUMMARY_FORMAT,
         // The logo has a file of its own.
-        facts: StudyFacts { logo: None, ..report.facts.clone() },
+        facts: StudyFacts {
+            logo: None,
+            production_designs: report.production.as_ref().map(|made| made.designs.len()),
+            ..report.facts.clone()
+        },
         rows: report.designs.iter().map(DesignSummaryRow::of).collect(),
         analysis: &report.analysis,
         confirmations: &report.confirmations,
+        production: report.production.as_deref().map(ProductionSummary::of),
         files: files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect(),
     };
     OutputFile::json(SUMMARY, &summary)

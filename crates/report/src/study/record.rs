@@ -43,6 +43,9 @@ pub struct StudyFacts {
     pub plan: PlanFacts,
     /// Number of designs.
     pub designs: usize,
+    /// Number of designs scattered as in production about the best of a search.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub production_designs: Option<usize>,
     /// Seed of the random numbers of light.
     pub seed: u64,
     /// The requested estimator of flux.
@@ -66,6 +69,16 @@ impl StudyFacts {
     pub(crate) fn whole_project(&self) -> Option<Project> {
         let project = self.project.clone()?;
         Some(Project { logo: self.logo.clone(), ..project })
+    }
+
+    /// Most records that there can be.
+    pub fn records(&self) -> usize {
+        self.designs + self.production_designs.unwrap_or(0)
+    }
+
+    /// The parameters that differ between designs.
+    pub(crate) fn varied(&self) -> impl Iterator<Item = &ParameterFacts> {
+        self.parameters.iter().filter(|own| own.domain != Domain::AsInScene)
     }
 
     /// Whether both belong to the same study, so that their designs can be merged.
@@ -253,6 +266,8 @@ pub struct StudyReport {
     pub analysis: Analysis,
     /// The best design of a search, traced again.
     pub confirmations: Vec<Confirmation>,
+    /// That best design as production scatters it, as a study of its own.
+    pub production: Option<Box<StudyReport>>,
 }
 
 impl StudyReport {

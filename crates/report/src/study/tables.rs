@@ -1,4 +1,4 @@
-//! `study.csv`: a row for each design, units in the header.
+//! `study.csv`, and `production.csv` of a search: a row for each design, units in the header.
 
 use crate::OutputFile;
 use crate::csv::table;
@@ -9,10 +9,11 @@ use lumiduct_input::{DESIGN_COLUMN, OTHER_COLUMNS};
 
 /// All tables of a study.
 pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {
-    Ok(vec![designs(report)?])
+    let made = report.production.iter().map(|made| designs(made, "production.csv"));
+    [designs(report, "study.csv")].into_iter().chain(made).collect()
 }
 
-fn designs(report: &StudyReport) -> Result<OutputFile> {
+fn designs(report: &StudyReport, name: &str) -> Result<OutputFile> {
     let facts = &report.facts;
     let mut header = vec![DESIGN_COLUMN.to_owned()];
     header.extend(facts.parameters.iter().map(|parameter| parameter.column()));
@@ -27,7 +28,7 @@ fn designs(report: &StudyReport) -> Result<OutputFile> {
     header.extend(numbered(&checked).into_iter().map(|name| format!("check {name}")));
     header.extend(OTHER_COLUMNS.map(str::to_owned));
     let names: Vec<&str> = header.iter().map(String::as_str).collect();
-    table("study.csv".into(), &names, report.designs.iter().map(|design| row(report, design)))
+    table(name.to_owned(), &names, report.designs.iter().map(|design| row(report, design)))
 }
 
 fn row(report: &StudyReport, design: &DesignRecord) -> Vec<String> {

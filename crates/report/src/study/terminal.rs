@@ -3,6 +3,7 @@
 use crate::study::confirmation::words;
 use crate::study::contents::verdict;
 use crate::study::figures::setting_words;
+use crate::study::sampled::broken;
 use crate::study::{DesignOutcome, DesignRecord, StudyReport};
 use lumiduct_base::number::format_percent;
 
@@ -33,7 +34,8 @@ pub fn terminal(report: &StudyReport) -> String {
     for own in &report.confirmations {
         text += &format!("  {}\n", words(own));
     }
-    for own in &report.analysis.failures {
+    let made = report.production.iter().flat_map(|made| &made.analysis.failures);
+    for own in report.analysis.failures.iter().chain(made) {
         let [low, high] = own.interval.map(format_percent);
         let open = match own.undecided {
             0 => String::new(),
@@ -46,6 +48,8 @@ pub fn terminal(report: &StudyReport) -> String {
             own.passed + own.failed + own.undecided
         );
     }
+    let parts = report.production.iter().filter_map(|made| broken(made));
+    parts.for_each(|words| text += &format!("  {words}\n"));
     let broken = report.designs.iter().filter_map(|design| match &design.outcome {
         DesignOutcome::Failed(reason) => Some((design.design, reason)),
         DesignOutcome::Done(_) => None,
@@ -60,6 +64,6 @@ pub fn terminal(report: &StudyReport) -> String {
 }
 
 fn settings(report: &StudyReport, design: &DesignRecord) -> String {
-    let words = report.facts.parameters.iter().map(|parameter| setting_words(parameter, design));
+    let words = report.facts.varied().map(|parameter| setting_words(parameter, design));
     words.collect::<Vec<_>>().join(", ")
 }

@@ -1,119 +1,15 @@
-//! The example studies: their results in the repository belong to the current studies and are
-//! reproducible.
-
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
-mod package;
-mod skip;
+//! Searches for the best design of a rod whose transmission follows from Beer and Lambert's law.
 
 use lumiduct::study::{BatchOptions, BatchProgress, FinishedStudy, OnExisting, run_study};
 use lumiduct_core::measure::CheckOutcome;
 use lumiduct_core::transport::{Interrupt, Shard};
-use lumiduct_input::{Plan, Study, StudySettings, load_study};
-use lumiduct_report::study::{DesignOutcome, DesignRecord, Pairing, StudyReport};
-use serde_json::Value;
+use lumiduct_input::{StudySettings, load_study};
+use lumiduct_report::study::{DesignOutcome, DesignRecord, StudyReport};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The design of each study that is traced again; any other would do.
-const AGAIN: u64 = 3;
-
-fn studies() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/studies");
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .collect();
-    paths.sort();
-    paths
-}
-
-fn results(study: &Path) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/studies").join(study.file_stem().unwrap())
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
-}
-
-#[test]
-fn every_study_has_results_of_its_own_and_none_is_without_a_design() {
-    if package::is_without_reports() {
-        return;
-    }
-    assert!(studies().len() >= 4);
-    for path in studies() {
-        let study = load_study(&path, &StudySettings::default()).unwrap();
-        let manifest = json(&results(&path).join("batch.json"));
-        let name = path.display();
-        assert_eq!(manifest["hash"], study.hash, "{name}: run lumiduct batch with --overwrite");
-        let designs = manifest["designs"].as_u64().unwrap() as usize;
-        assert_eq!(fs::read_dir(results(&path).join("designs")).unwrap().count(), designs);
-        let summary = json(&results(&path).join("study.json"));
-        for file in summary["files"].as_array().unwrap() {
-            assert!(results(&path).join(file.as_str().unwrap()).is_file(), "{name}: {file}");
-        }
-        for row in summary["rows"].as_array().unwrap() {
-            assert!(row.get("failed").is_none(), "{name}: {row}");
-        }
-    }
-}
-
-#[test]
-fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
-    if package::is_without_reports() {
-        return;
-    }
-    for path in studies() {
-        let study = load_study(&path, &StudySettings::default()).unwrap();
-        if matches!(study.plan, Plan::Search(_)) {
-            begin_again(&path, &study);
-            continue;
-        }
-        let manifest = json(&results(&path).join("batch.json"));
-        let folder = tempfile::tempdir().unwrap();
-        let options = BatchOptions {
-            settings: StudySettings::default(),
-            dir: Some(folder.path().to_path_buf()),
-            existing: OnExisting::Keep,
-            jobs: 1,
-            shard: Shard::new(AGAIN, manifest["designs"].as_u64().unwrap()).unwrap(),
-        };
-        run_study(&path, &options, &Interrupt::default(), &|_| {}).unwrap();
-        let record = |folder: &Path| {
-            // Another build may have traced the results in the repository; its numbers are the
-            // same.
-            DesignRecord { build: String::new(), ..record(folder, AGAIN) }
-        };
-        assert_eq!(record(folder.path()), record(&results(&path)), "{}", path.display());
-    }
-}
-
-fn record(folder: &Path, design: u64) -> DesignRecord {
-    let path = folder.join(format!("designs/{design:04}.json"));
-    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
-}
-
-/// Traces the first designs of a search again: one of fewer designs begins with the same.
-fn begin_again(path: &Path, study: &Study) {
-    const DESIGNS: u64 = 4;
-    let folder = tempfile::tempdir().unwrap();
-    let mut text: toml::Table = study.text.parse().unwrap();
-    text["scene"] = fs::canonicalize(&study.scene).unwrap().to_str().unwrap().into();
-    text["plan"]["search"]["designs"] = (DESIGNS as i64).into();
-    let copy = folder.path().join("first.toml");
-    fs::write(&copy, text.to_string()).unwrap();
-    let found = search(&copy, &folder.path().join("out"), OnExisting::Keep);
-    assert_eq!(found.designs.len() as u64, DESIGNS);
-    for design in &found.designs {
-        let before = record(&results(path), design.design as u64);
-        assert_eq!((&design.settings, &design.outcome), (&before.settings, &before.outcome));
-    }
-}
-
 /// The results of a whole search.
-fn search(path: &Path, dir: &Path, existing: OnExisting) -> StudyReport {
+pub(crate) fn search(path: &Path, dir: &Path, existing: OnExisting) -> StudyReport {
     let options = BatchOptions {
         settings: StudySettings::default(),
         dir: Some(dir.to_path_buf()),
@@ -334,58 +230,119 @@ fn a_search_that_says_nothing_or_too_much_is_refused() {
     assert!(error.to_string().contains("a search cannot be split"), "{error}");
 }
 
-/// A rod with two indices, for a seed.
-const PAIR: &str = r#"
-lumiduct_study = 1
-title = "Two rods"
-scene = "rod.toml"
-measures = ["exit.flux"]
-plan = "grid"
-[parameters.index]
-keys = ["media.acrylic.index"]
-values = [1.49, 1.52]
-[run]
-paths = 20_000
-estimator = "forward"
-[ranking]
-measure = "exit.flux"
-"#;
+/// The longest rod, whose length production keeps to 0.1 mm while the beam moves along its axis.
+fn produced() -> String {
+    let axis = "[parameters.gap]\nkeys = [\"sources.beam.disk.at.position_mm.2\"]\nunit = \"mm\"\ntolerance = { std_dev = 0.05 }\n[run]";
+    LONGEST
+        .replace("designs = 40,", "designs = 40, samples = 60,")
+        .replace("to = 50 }", "to = 50 }\ntolerance = { plus_minus = 0.1 }")
+        .replace("[run]", axis)
+}
 
 #[test]
-fn the_error_of_a_difference_is_what_it_says_and_smaller_than_that_of_independent_designs() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = concat!(
-        "lumiduct = 1\ntitle = \"Rod\"\n",
-        include_str!("rod.toml"),
-        "[sensors]\nexit = { plane = { cells = [1, 1] }, on = \"rod.exit\", counts = \"leaving\" }\n"
-    );
-    fs::write(folder.path().join("rod.toml"), scene).unwrap();
-    let path = folder.path().join("pair.toml");
-    fs::write(&path, PAIR).unwrap();
-    let (mut differences, mut errors, mut alone) = (Vec::new(), Vec::new(), Vec::new());
-    for seed in 1..=48 {
-        let options = BatchOptions {
-            settings: StudySettings { seed: Some(seed), ..StudySettings::default() },
-            dir: Some(folder.path().join(format!("out{seed}"))),
-            existing: OnExisting::Keep,
-            jobs: 2,
-            shard: Shard::WHOLE,
-        };
-        let finished = run_study(&path, &options, &Interrupt::default(), &|_| {}).unwrap();
-        let report = finished.report.unwrap();
-        let [first, second] =
-            [0, 1].map(|place| report.designs[place].measure("exit.flux").unwrap());
-        let behind = report.analysis.ranked[1].behind.unwrap();
-        assert_eq!(behind.evidence, Pairing::Paired);
-        differences.push(first.value - second.value);
-        errors.push(behind.std_error);
-        alone.push(first.std_error.hypot(second.std_error));
+fn half_of_the_rods_at_the_limit_fail_in_production_and_slopes_are_those_of_the_law() {
+    let (folder, path) = longest(&produced());
+    let out = folder.path().join("out");
+    let found = search(&path, &out, OnExisting::Keep);
+    let best = found.best_passing().unwrap().settings["length"].number().unwrap();
+    let made = found.production.as_deref().unwrap();
+    assert_eq!((made.designs.len(), made.facts.seed), (60, found.facts.seed + 1));
+    for design in &made.designs {
+        let length = design.settings["length"].number().unwrap();
+        let share = design.measure("exit.efficiency").unwrap().value;
+        assert!((length - best).abs() <= 0.1);
+        assert!((share - (-0.05 * length).exp()).abs() < 1e-12, "{length}: {share}");
     }
-    // The spread over seeds is the truth; with 48 seeds its own error is 1/sqrt(2 * 47) = 10 %.
-    let spread = lumiduct_core::tally::Tally::of(differences.iter().copied());
-    let spread = spread.std_error() * (differences.len() as f64).sqrt();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let ratio = mean(&errors) / spread;
-    assert!((0.7..1.45).contains(&ratio), "told {}, found {spread}", mean(&errors));
-    assert!(mean(&alone) > 2.0 * mean(&errors), "{} and {}", mean(&alone), mean(&errors));
+    // The search ends at the limit, so half of them are too long: 30 of 60, with a standard deviation of 3.9.
+    let failed = &made.analysis.failures[0];
+    assert!((15..=45).contains(&failed.failed) && failed.undecided == 0, "{failed:?}");
+    let [length, gap] = &made.analysis.sensitivities[0].indices[..] else { panic!() };
+    let [slope, _] = length.slope.unwrap();
+    // The derivative of exp(-0.05 x) where it is a half; to both sides it changes by 0.5 %.
+    assert!((slope + 0.025).abs() < 1e-4, "{slope}");
+    // What is left of the fit is the curvature of the law, up to 6e-6, over the 0.05 mm of the gap.
+    assert!(gap.slope.unwrap()[0].abs() < 1e-4, "{gap:?}");
+    let page = fs::read_to_string(out.join("study.md")).unwrap();
+    assert!(
+        page.contains("## In production") && page.contains("length in mm: uniform from 13.7"),
+        "{page}"
+    );
+    let table = fs::read_to_string(out.join("production.csv")).unwrap();
+    assert_eq!(table.lines().count(), 61);
+    assert!(out.join("production.exit.efficiency.png").exists());
+    assert!(lumiduct_report::study::terminal(&found).contains("expected in production"));
+}
+
+#[test]
+fn parts_that_give_no_scene_fail_and_are_told() {
+    // The shortest rod that is allowed has 0.05 mm, so that about a quarter of the parts have less than none.
+    let text = produced()
+        .replace("length = -1", "length = 1")
+        .replace("from = 1, to = 50", "from = 0.05, to = 50")
+        .replace("designs = 40", "designs = 30");
+    let (folder, path) = longest(&text);
+    let found = search(&path, &folder.path().join("out"), OnExisting::Keep);
+    let made = found.production.as_deref().unwrap();
+    let broken = made.counts().broken;
+    assert!((5..=27).contains(&broken), "{broken}");
+    assert_eq!(made.analysis.failures[0].failed, broken);
+    let words = format!("{broken} of 60 simulated parts give no valid scene and count as failed");
+    assert!(lumiduct_report::study::terminal(&found).contains(&words));
+    let page = fs::read_to_string(folder.path().join("out/study.md")).unwrap();
+    assert!(page.contains(&words), "{page}");
+    assert!(made.facts.measures.iter().all(|measure| measure != "cost"));
+}
+
+#[test]
+fn production_that_is_stopped_is_resumed_there_and_replaced_as_a_whole() {
+    let text = produced().replace("designs = 40", "designs = 8");
+    let (folder, path) = longest(&text);
+    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
+    search(&path, &whole, OnExisting::Keep);
+    let stopped = stopped_when(&path, &out, |progress| progress.wanted == 60 && progress.done > 20);
+    assert!(stopped.report.is_none() && !out.join("study.md").exists());
+    assert!((29..68).contains(&stopped.done[0]) && stopped.done[1] == 68, "{:?}", stopped.done);
+    let records = |dir: &Path| fs::read_dir(dir.join("designs")).unwrap().count();
+    search(&path, &out, OnExisting::Resume);
+    for name in ["study.json", "study.md", "study.html", "production.csv", "designs/0068.json"] {
+        let [before, after] = [&whole, &out].map(|dir| fs::read(dir.join(name)).unwrap());
+        assert_eq!(before, after, "{name}");
+    }
+    // Without a tolerance nothing of production remains.
+    fs::write(&path, LONGEST.replace("designs = 40", "designs = 8")).unwrap();
+    let found = search(&path, &out, OnExisting::Replace);
+    assert!(found.production.is_none() && records(&out) == 8);
+    assert!(!out.join("production.csv").exists());
+}
+
+#[test]
+fn tolerances_that_say_nothing_are_refused() {
+    let refused = |old: &str, new: &str, words: &str| {
+        let text = produced().replace(old, new);
+        assert_ne!(text, produced());
+        let (_folder, path) = longest(&text);
+        let error = load_study(&path, &StudySettings::default()).unwrap_err().to_string();
+        assert!(error.contains(words), "{new}: {error}");
+    };
+    refused("plus_minus = 0.1", "plus_minus = 0", "0 is out of range, expected above 0");
+    refused("plus_minus = 0.1", "plus_minus = 1e308", "is no width");
+    refused("samples = 60", "samples = 1", "1 is out of range, expected 2 to");
+    let text = LONGEST.replace("designs = 40,", "designs = 40, samples = 60,");
+    let (_folder, path) = longest(&text);
+    let error = load_study(&path, &StudySettings::default()).unwrap_err().to_string();
+    assert!(error.contains("no parameter has a `tolerance`"), "{error}");
+    refused(
+        "tolerance = { plus_minus",
+        "whole = true\ntolerance = { plus_minus",
+        "does not scatter",
+    );
+    refused("position_mm.2\"", "offset_mm.0\"", "no common number");
+    refused("length = -1", "length = -1, gap = 1", "the search does not change it");
+    refused("range = { from = 1, to = 50 }\n", "", "there is nothing to search");
+    let sampled = "latin_hypercube = { samples = 8 }";
+    refused(
+        "search = { designs = 40, samples = 60, cost = { length = -1 } }",
+        sampled,
+        "is for a search",
+    );
 }

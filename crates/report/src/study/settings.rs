@@ -1,0 +1,37 @@
+//! Settings and domains of parameters in words.
+
+use lumiduct_base::number::format_value;
+use lumiduct_input::{Domain, Setting};
+use std::fmt::Write;
+
+/// A setting, without its unit.
+pub(super) fn setting_word(setting: &Setting) -> String {
+    match setting {
+        Setting::Number(number) => format_value(*number),
+        Setting::Choice(name) => name.clone(),
+        Setting::AsInScene => "as in the scene".into(),
+    }
+}
+
+/// The domain of a parameter, in words.
+pub(super) fn domain_words(domain: &Domain) -> String {
+    match domain {
+        Domain::Levels(levels) => levels.iter().map(setting_word).collect::<Vec<_>>().join(", "),
+        Domain::Uniform { from, to } => {
+            format!("uniform from {} to {}", format_value(*from), format_value(*to))
+        }
+        Domain::Normal { mean, std_dev, from, to } => {
+            let (mean, std_dev) = (format_value(*mean), format_value(*std_dev));
+            let mut text = format!("normal, mean {mean}, standard deviation {std_dev}");
+            if let Some(from) = from {
+                _ = write!(text, ", not below {}", format_value(*from));
+            }
+            if let Some(to) = to {
+                _ = write!(text, ", not above {}", format_value(*to));
+            }
+            text
+        }
+        Domain::Listed => "from the table".into(),
+        Domain::AsInScene => "as in the scene".into(),
+    }
+}

@@ -149,10 +149,11 @@ pub fn merge_slices(
     let mut run = Run::new(&job.scene, &job.run);
     let slices = parts.into_iter().map(|(_, part)| part.slice).collect();
     run.restore(run.state_of_slices(slices));
-    let report = compose(&job, &run.findings(), Stop::Paths)?;
+    let stop = Stop::complete(&job.run.stop);
+    let report = compose(&job, &run.findings(), stop)?;
     let written = folder.write(&report::files(&report, &job.text, Pictures::Drawn)?)?;
     let dir = folder.path().to_path_buf();
-    let (stop, luminaire, warnings) = (Stop::Paths, None, job.warnings);
+    let (luminaire, warnings) = (None, job.warnings);
     Ok(FinishedRun { report, written, stop, dir, luminaire, warnings })
 }
 

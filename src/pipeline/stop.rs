@@ -2,6 +2,7 @@
 
 use crate::pipeline::progress::TargetProgress;
 use lumiduct_core::measure::Status;
+use lumiduct_core::plan::StopRules;
 
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +24,11 @@ pub enum Stop {
 }
 
 impl Stop {
+    /// That of a run whose batches are all traced.
+    pub(super) fn complete(rules: &StopRules) -> Self {
+        if rules.batches.is_some() { Self::Batches } else { Self::Paths }
+    }
+
     /// A sentence for the report, without times, as reports do not depend on the clock.
     pub fn reason(self) -> &'static str {
         match self {

@@ -154,8 +154,7 @@ impl<'j> Tracing<'j> {
     /// What ends the run before its round is over.
     fn early_stop(&self) -> Option<Stop> {
         if self.run.is_complete() {
-            let is_repeated = self.clock.plan.stop.batches.is_some();
-            Some(if is_repeated { Stop::Batches } else { Stop::Paths })
+            Some(Stop::complete(&self.clock.plan.stop))
         } else if self.clock.interrupt.is_raised() {
             Some(Stop::Interrupted)
         } else {

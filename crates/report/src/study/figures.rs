@@ -90,7 +90,7 @@ impl Figure {
 }
 
 /// The label of a measure with its unit.
-fn measure_label(report: &StudyReport, measure: &str) -> String {
+pub(super) fn measure_label(report: &StudyReport, measure: &str) -> String {
     match report.unit(measure) {
         "1" => measure.to_owned(),
         unit => format!("{measure} in {unit}"),

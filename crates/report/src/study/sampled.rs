@@ -2,6 +2,7 @@
 
 use crate::page::{Block, PagePart, table};
 use crate::study::confirmation::of_best;
+use crate::study::figures::measure_label;
 use crate::study::settings::domain_words;
 use crate::study::{
     DesignOutcome, ParameterFacts, Sensitivity, SensitivityIndex, SensitivityMethod, StudyReport,
@@ -73,7 +74,7 @@ fn slopes(report: &StudyReport) -> Option<[Block; 2]> {
     };
     let row = |own: &Sensitivity| -> Option<Vec<String>> {
         let slopes: Option<Vec<String>> = own.indices.iter().map(slope).collect();
-        Some([labelled(report, &own.measure)].into_iter().chain(slopes?).collect())
+        Some([measure_label(report, &own.measure)].into_iter().chain(slopes?).collect())
     };
     let rows: Option<Vec<Vec<String>>> = all.iter().map(row).collect();
     let label = |index: &SensitivityIndex| {
@@ -137,7 +138,7 @@ fn spread(report: &StudyReport, made: &StudyReport) -> [Block; 2] {
         let nominal = of_best(report, measure)
             .map_or(String::new(), |own| format_with_error(own.value, own.total_error()));
         let numbers = [tally.mean(), deviation, least, low, median, high, greatest];
-        let row = [labelled(made, measure), nominal].into_iter();
+        let row = [measure_label(made, measure), nominal].into_iter();
         Some(row.chain(numbers.map(format_value)).collect())
     });
     [Block::Words { text: words.to_owned() }, table(&head, rows.collect())]
@@ -148,14 +149,6 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let [below, above] = [place.floor(), place.ceil()].map(|place| sorted[place as usize]);
     below + (above - below) * place.fract()
-}
-
-/// A measure with its unit: "exit.flux in lm".
-fn labelled(report: &StudyReport, measure: &str) -> String {
-    match report.unit(measure) {
-        "1" => measure.to_owned(),
-        unit => format!("{measure} in {unit}"),
-    }
 }
 
 /// How many of the simulated parts give no scene, and the first reason; `None` if all do.

@@ -225,13 +225,14 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 return;
             }
             let photon = &passing[index];
-            let met = match known {
-                Some((last, met)) if last == index => met,
-                Some(_) | None => arriving((scene, has_grain), &keys[index], photon),
+            let (_, met) = match known.take() {
+                Some(last) if last.0 == index => known.insert(last),
+                Some(_) | None => {
+                    known.insert((index, arriving((scene, has_grain), &keys[index], photon)))
+                }
             };
-            known = Some((index, met));
             near |= 1 << index;
-            let Some(shares) = weights.flux(record, &met) else { return };
+            let Some(shares) = weights.flux(record, met) else { return };
             work.pairs += 1;
             let own = record.path();
             let RecordedPath { sensor, pass, cells, merged, .. } =

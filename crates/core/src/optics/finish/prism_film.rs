@@ -75,12 +75,11 @@ impl FinishModel for MetFilm<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::finish::testing::{assert_adjoint, splitter};
+    use crate::optics::finish::testing::{assert_adjoint, incidence, splitter};
     use crate::optics::{Faces, FilmMake, Finish, Grain};
 
-    #[test]
-    fn films_are_the_same_film_from_both_sides() {
-        let make = FilmMake {
+    fn make() -> FilmMake {
+        FilmMake {
             index: 1.59,
             prism_angle: 1.4,
             pitch: 0.3,
@@ -88,14 +87,48 @@ mod tests {
             absorption: 0.4,
             rounded: 0.03,
             run: Grain::Around,
-        };
-        let film = Box::new(PrismFilm::new(&make));
+        }
+    }
+
+    #[test]
+    fn films_are_the_same_film_from_both_sides() {
+        let film = Box::new(PrismFilm::new(&make()));
         for face in [FilmFace::Flat, FilmFace::Prisms] {
             let own = Finish::PrismFilm { film: film.clone(), face };
             let mixed = Finish::Mixture(vec![(2.0, own.clone()), (1.0, splitter())]);
             for own in [own, mixed] {
                 let behind = own.from_behind().unwrap();
                 assert_adjoint(Faces { own: &own, behind: &behind });
+            }
+        }
+    }
+
+    #[test]
+    fn chances_are_roughly_those_of_photons() {
+        const PHOTONS: u32 = 4000;
+        let make = FilmMake { absorption: 0.0, rounded: 0.0, ..make() };
+        let film = PrismFilm::new(&make);
+        for face in [FilmFace::Flat, FilmFace::Prisms] {
+            let met = MetFilm { film: &film, face };
+            for angle in [0.0, 0.3, 0.65, 1.0, 1.3, 1.5] {
+                let light = incidence(angle, [1.0, 1.0]);
+                let count = |side: Side| {
+                    (0..PHOTONS)
+                        .filter_map(|index| {
+                            met.scatter(&light, &mut Sampler::for_path(5, 0, u64::from(index)))
+                        })
+                        .filter(|out| out.side == side)
+                        .count()
+                };
+                let [reflected, transmitted] = [Side::Reflected, Side::Transmitted].map(count);
+                let seen = reflected as f64 / (reflected + transmitted) as f64;
+                let chances = met.chances(&light);
+                assert!((chances.sum() - 1.0).abs() < 1e-12);
+                assert!(
+                    (chances.reflected - seen).abs() < 0.15,
+                    "{face:?} at {angle}: {seen}, {chances:?}"
+                );
+                assert!(chances.reflected > 0.0 && chances.transmitted > 0.0);
             }
         }
     }

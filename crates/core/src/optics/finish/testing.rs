@@ -139,8 +139,8 @@ fn assert_paths_are_sound(finish: &Finish) {
 /// Photons go to each side in the shares and with the chances that the finish gives, and that they state.
 fn assert_follows_shares(finish: &Finish) {
     const ROUNDING: f64 = 1e-9;
-    let told = format!("{finish:?}");
-    let is_rough = told.contains("Microfacet") || told.contains("PrismFilm");
+    // Chances of rough facets are those of a level one.
+    let room = if matches!(finish, Finish::Microfacet(_)) { 0.4 } else { ROUNDING };
     for incidence in light() {
         for side in [Side::Reflected, Side::Transmitted] {
             let sent = |worth: fn(&Scattered, bool) -> f64| {
@@ -158,7 +158,7 @@ fn assert_follows_shares(finish: &Finish) {
             assert!(number.mean() == 0.0 || chances.of(side) > 0.0, "{finish:?}, {side:?}");
             let expected = [
                 (flux, shares.of(side), ROUNDING),
-                (number, chances.of(side), if is_rough { 0.5 } else { ROUNDING }),
+                (number, chances.of(side), room),
                 (surprise, 0.0, ROUNDING),
             ];
             for (seen, expected, room) in expected {

@@ -158,7 +158,7 @@ pub(crate) struct NormalSpec {
     pub to: Option<f64>,
 }
 
-/// How production scatters a value about the intended one.
+/// How production scatters a value about the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Tolerance {

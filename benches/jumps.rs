@@ -1,4 +1,5 @@
-//! Rows of mirror bounces taken at once against the same paths step by step, on guides of the validation.
+//! Rows of mirror bounces taken at once against the same paths step by step, on guides of the validation and a
+//! hexagonal rod.
 //!
 //! `cargo bench --bench jumps`, with scene names after `--` to restrict it to those. One thread; both in turn, several times.
 //! A cost is CPU seconds times the relative variance of the flux at the exit.
@@ -16,8 +17,16 @@ use lumiduct_input::{self as input, Job, Settings};
 use noise::noise;
 use std::path::Path;
 
-const SCENES: [&str; 7] =
-    ["b1_p10_r95", "b1_p10_r99", "b1_p100_r95", "b1_p100_r99", "b2_l60", "b2_l600", "b4"];
+const SCENES: [&str; 8] = [
+    "validation/b1_p10_r95",
+    "validation/b1_p10_r99",
+    "validation/b1_p100_r95",
+    "validation/b1_p100_r99",
+    "validation/b2_l60",
+    "validation/b2_l600",
+    "validation/b4",
+    "rgb_mixing_rod",
+];
 /// Photon paths of a batch, batches, and turns.
 const BATCH_PATHS: u64 = 1024;
 const BATCHES: u64 = 128;
@@ -36,7 +45,7 @@ fn main() {
 
 /// The row of a scene.
 fn row(name: &str) -> String {
-    let path = format!("scenes/validation/{name}.toml");
+    let path = format!("scenes/{name}.toml");
     let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
     let (mut stepped, mut jumped) = (Measured::default(), Measured::default());
     for turn in 0..TURNS {

@@ -7,7 +7,7 @@ use lumiduct_core::plan::{GatherPlan, Request};
 use lumiduct_core::transport::forward::Forward;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
 use lumiduct_core::transport::{Event, Findings, Observer, Path as LightPath};
-use lumiduct_input::{self as input, Settings};
+use lumiduct_input::{self as input, Job, Settings};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -30,48 +30,93 @@ impl Observer for Onlooker {
     }
 }
 
+/// Compares the light of a scene with and without rows: the segments saved.
+fn saved_without_change(what: &str, job: &Job) -> u64 {
+    let forward = Forward::new(&job.scene, 1, BOUNCES, 512);
+    let signal = StopSignal::default();
+    let found = |allows_jumps| {
+        let pace = Pace::new(&signal);
+        let batches = (0..4).map(|batch| {
+            forward.batch_observed(batch, &mut Onlooker { allows_jumps }, &pace).unwrap()
+        });
+        let readings = batches.reduce(|sum, next| sum.merge(&next)).unwrap();
+        measure::measure(&job.scene, &Findings::forward(readings))
+    };
+    let (stepped, jumped) = (found(false), found(true));
+    let room = FEW_PATHS / (4.0 * 512.0) * job.scene.source_flux();
+    for (name, measure) in stepped.values.iter().filter(|(_, own)| is_flux(&own.unit)) {
+        let other = &jumped.values[name.as_str()];
+        let off = (measure.value - other.value).abs();
+        assert!(off <= room, "{what}: {name} {measure} {other}");
+    }
+    for (own, other) in stepped.sensor_paths.iter().zip(&jumped.sensor_paths) {
+        // One path in eight has a class.
+        let flux = stepped.values[&format!("{}.flux", own.sensor)].value;
+        let room = 8.0 * room / flux;
+        for class in own.classes.iter().filter(|class| class.share > room) {
+            let same = other
+                .classes
+                .iter()
+                .find(|one| (&one.steps, one.extent) == (&class.steps, class.extent));
+            let off = same.map(|one| (one.share - class.share).abs());
+            assert!(off.is_some_and(|off| off <= room), "{what}: {class:?} {same:?}");
+        }
+    }
+    stepped.segments - jumped.segments
+}
+
 #[test]
 fn rows_of_bounces_taken_at_once_change_no_light_of_a_shipped_scene() {
-    let mut saved = 0;
-    for path in shipped() {
-        let job = load(&path, &[]);
-        let forward = Forward::new(&job.scene, 1, BOUNCES, 512);
-        let signal = StopSignal::default();
-        let found = |allows_jumps| {
-            let pace = Pace::new(&signal);
-            let batches = (0..4).map(|batch| {
-                forward.batch_observed(batch, &mut Onlooker { allows_jumps }, &pace).unwrap()
-            });
-            let readings = batches.reduce(|sum, next| sum.merge(&next)).unwrap();
-            measure::measure(&job.scene, &Findings::forward(readings))
-        };
-        let (stepped, jumped) = (found(false), found(true));
-        let room = FEW_PATHS / (4.0 * 512.0) * job.scene.source_flux();
-        for (name, measure) in stepped.values.iter().filter(|(_, own)| is_flux(&own.unit)) {
-            let other = &jumped.values[name.as_str()];
-            let off = (measure.value - other.value).abs();
-            assert!(off <= room, "{}: {name} {measure} {other}", path.display());
-        }
-        for (own, other) in stepped.sensor_paths.iter().zip(&jumped.sensor_paths) {
-            // One path in eight has a class.
-            let flux = stepped.values[&format!("{}.flux", own.sensor)].value;
-            let room = 8.0 * room / flux;
-            for class in own.classes.iter().filter(|class| class.share > room) {
-                let same = other
-                    .classes
-                    .iter()
-                    .find(|one| (&one.steps, one.extent) == (&class.steps, class.extent));
-                let off = same.map(|one| (one.share - class.share).abs());
-                assert!(
-                    off.is_some_and(|off| off <= room),
-                    "{}: {class:?} {same:?}",
-                    path.display()
-                );
-            }
-        }
-        saved += stepped.segments - jumped.segments;
-    }
+    let saved_in =
+        |path: PathBuf| saved_without_change(&path.display().to_string(), &load(&path, &[]));
+    let saved: u64 = shipped().into_iter().map(saved_in).sum();
     assert!(saved > 100_000, "{saved} segments");
+}
+
+/// A tube with holes and black dots along all of it, and a rod over a polygon.
+const PATTERNS_AND_POLYGON: &str = r#"
+[finishes]
+mirror = { specular = { reflectance = 1 } }
+[sheets.duct.tube]
+profile = { circle = { radius_mm = 3 } }
+path = [{ straight_mm = 130 }]
+finish = "mirror"
+[patterns.holes]
+on = "duct.wall"
+finish = "open"
+element = { circle = { diameter_mm = 2 } }
+layout = { row = { pitch_mm = 10, along_mm = [5, 120], around_deg = 350 } }
+wall_mm = 0.2
+[patterns.dots]
+on = "duct.wall"
+finish = "black"
+element = { rectangle = { width_mm = 1, length_mm = 1 } }
+layout = { row = { pitch_mm = 7, along_mm = [64, 125], around_deg = 100 } }
+[media.glass]
+index = 1.5
+[solids.rod.sweep]
+profile = { polygon = { points_mm = [[20, 0], [24, 1], [24, 4], [21, 5]] } }
+path = [{ straight_mm = 80 }]
+medium = "glass"
+[sources.lamp.disk]
+radius_mm = 2.5
+flux_lm = 1
+at = { position_mm = [0, 0, 0.1] }
+[sources.led.disk]
+radius_mm = 1
+flux_lm = 1
+at = { position_mm = [22, 2.5, -0.1] }
+[sensors]
+holes = { plane = { cells = [1, 6] }, on = "duct.wall", counts = "leaving", side = "front" }
+exit = { plane = {}, on = "duct.exit", counts = "incident" }
+end = { plane = {}, on = "rod.exit", counts = "leaving" }
+"#;
+
+#[test]
+fn rows_end_at_the_elements_of_patterns() {
+    let saved =
+        saved_without_change("holes and polygon", &Scenes::new().load(PATTERNS_AND_POLYGON));
+    assert!(saved > 10_000, "{saved} segments");
 }
 
 /// A plate with a mirrored end, seen through the other. A path from the mirror takes rows along one edge, and from the sides

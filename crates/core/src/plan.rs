@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// Version of the numerics. Every change that alters a committed report raises it, so that a
 /// report, a checkpoint or a record from older numerics is never mistaken for a current one.
-pub const NUMERICS: u32 = 21;
+pub const NUMERICS: u32 = 22;
 
 /// How to trace and when to stop. Its names in files are part of the identity of a run, and stay
 /// fixed when the code changes.

@@ -341,6 +341,10 @@ impl FinishModel for Finish {
         ask!(self, finish => finish.only_mirrors(incidence))
     }
 
+    fn mirrors_alike(&self, incidence: &Incidence) -> bool {
+        ask!(self, finish => finish.mirrors_alike(incidence))
+    }
+
     fn passes_straight(&self) -> bool {
         ask!(self, finish => finish.passes_straight())
     }

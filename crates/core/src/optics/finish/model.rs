@@ -118,6 +118,11 @@ pub trait FinishModel {
         false
     }
 
+    /// Whether light that arrives in this way, or at a flatter angle, is only mirrored, and all of it in the same proportion.
+    fn mirrors_alike(&self, _incidence: &Incidence) -> bool {
+        false
+    }
+
     /// Whether light can go through without being bent, as if both sides were of one index.
     fn passes_straight(&self) -> bool {
         false

@@ -82,6 +82,10 @@ impl FinishModel for SmoothInterface {
         fresnel::cos_transmitted(incidence.cos(), index_from, index_to).is_none()
     }
 
+    fn mirrors_alike(&self, incidence: &Incidence) -> bool {
+        self.only_mirrors(incidence)
+    }
+
     #[inline]
     fn scatter(
         &self,
@@ -118,7 +122,32 @@ impl FinishModel for SmoothInterface {
 mod tests {
     use super::*;
     use crate::optics::Finish;
-    use crate::optics::finish::testing::{assert_sound, incidence};
+    use crate::optics::finish::testing::{
+        assert_sound, clear_stack, coated, diffuse, incidence, metal, splitter, tabulated,
+    };
+
+    #[test]
+    fn light_mirrored_alike_is_mirrored_in_one_proportion_at_all_flatter_angles() {
+        let mirror = Finish::Specular { reflectance: 0.9, transmittance: 0.0 };
+        let of_one = [Finish::Smooth, mirror];
+        let others =
+            [splitter(), metal(), tabulated(), coated(), clear_stack(), diffuse(), Finish::Open];
+        let mut alike = 0;
+        for finish in of_one.into_iter().chain(others) {
+            for indices in [[1.49, 1.0], [1.0, 1.49], [1.3, 1.3]] {
+                let at = |step: u32| incidence(0.03 * f64::from(step), indices);
+                let Some(first) = (0..52).find(|step| finish.mirrors_alike(&at(*step))) else {
+                    continue;
+                };
+                alike += 1;
+                for step in first..52 {
+                    assert!(finish.only_mirrors(&at(step)), "{finish:?} at step {step}");
+                    assert_eq!(finish.shares(&at(step)), finish.shares(&at(first)), "{finish:?}");
+                }
+            }
+        }
+        assert_eq!(alike, 4, "in total reflection, and at the mirror of every medium");
+    }
 
     #[test]
     fn photons_and_gather_paths_follow_it() {

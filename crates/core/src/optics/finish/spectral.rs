@@ -151,6 +151,10 @@ impl FinishModel for SpectralFinish {
         ask!(self, self.met(incidence), finish => finish.only_mirrors(incidence))
     }
 
+    fn mirrors_alike(&self, incidence: &Incidence) -> bool {
+        ask!(self, self.met(incidence), finish => finish.mirrors_alike(incidence))
+    }
+
     fn passes_straight(&self) -> bool {
         // Of the wavelengths that are transmitted most.
         let shares = Shares { reflected: 0.0, transmitted: self.transmittance.largest() };

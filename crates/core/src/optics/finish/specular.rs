@@ -40,6 +40,10 @@ impl FinishModel for Specular {
         self.shares(incidence).transmitted == 0.0
     }
 
+    fn mirrors_alike(&self, incidence: &Incidence) -> bool {
+        self.only_mirrors(incidence)
+    }
+
     fn passes_straight(&self) -> bool {
         self.shares.transmitted > 0.0
     }

@@ -2,27 +2,27 @@
 
 use crate::scene::plain_leg::LegSection;
 use crate::scene::shape::Region;
-use crate::scene::{FaceId, Patch, PlainLeg, PrimId, Scene};
+use crate::scene::{FaceId, Owner, Patch, PlainLeg, PrimId, Scene};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
 use smallvec::SmallVec;
 
 /// Relative difference up to which lengths and directions are the same, 1.
-const SAME: f64 = 1e-12;
+pub(super) const SAME: f64 = 1e-12;
 
 /// A rectangular wall.
 #[derive(Debug, Clone, Copy)]
-struct FlatWall {
-    prim: PrimId,
-    face: FaceId,
-    middle: DVec3,
-    normal: DVec3,
+pub(super) struct FlatWall {
+    pub(super) prim: PrimId,
+    pub(super) face: FaceId,
+    pub(super) middle: DVec3,
+    pub(super) normal: DVec3,
     /// Half of its sides as vectors, mm.
-    sides: [DVec3; 2],
+    pub(super) sides: [DVec3; 2],
 }
 
 impl FlatWall {
-    fn of(prim: PrimId, patch: &Patch) -> Option<Self> {
+    pub(super) fn of(prim: PrimId, patch: &Patch) -> Option<Self> {
         let flat = patch.shape.as_flat()?;
         let Region::Rectangle { half_x, half_y } = flat.region() else { return None };
         let Frame { origin, x, y, z } = *flat.frame();
@@ -35,8 +35,14 @@ impl FlatWall {
         })
     }
 
+    /// All of an owner.
+    pub(super) fn all_of(scene: &Scene, owner: Owner) -> Vec<Self> {
+        let owned = scene.patches.iter().enumerate().filter(|(_, patch)| patch.owner == owner);
+        owned.filter_map(|(index, patch)| Self::of(PrimId::new(index), patch)).collect()
+    }
+
     /// Half of its extent along a unit vector, mm.
-    fn extent(&self, along: DVec3) -> f64 {
+    pub(super) fn extent(&self, along: DVec3) -> f64 {
         self.sides.iter().map(|side| side.dot(along).abs()).sum()
     }
 
@@ -68,9 +74,7 @@ impl FlatWall {
 pub(super) fn within(scene: &Scene, prim: PrimId) -> Option<PlainLeg> {
     let patch = &scene.patches[prim.index()];
     let wall = FlatWall::of(prim, patch)?;
-    let owned = scene.patches.iter().enumerate().filter(|(_, other)| other.owner == patch.owner);
-    let walls: Vec<FlatWall> =
-        owned.filter_map(|(index, patch)| FlatWall::of(PrimId::new(index), patch)).collect();
+    let walls = FlatWall::all_of(scene, patch.owner);
     let pairs = |of: &FlatWall| -> Vec<(FlatWall, DVec3)> {
         let of = *of;
         walls.iter().filter_map(|other| Some((*other, of.toward_opposite(other)?))).collect()

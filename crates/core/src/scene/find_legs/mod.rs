@@ -1,12 +1,14 @@
 //! Finds the plain legs of a scene: where along a straight wall nothing else can be met.
 
 mod duct;
+mod elements;
+mod prism;
 #[cfg(test)]
 mod tests;
 
 use crate::scene::plain_leg::LegSection;
-use crate::scene::shape::{Cylinder, Shape};
-use crate::scene::{Emitter, Patch, PlainLeg, PrimId, Scene, SensorKind};
+use crate::scene::shape::{Cylinder, Shape, Toward};
+use crate::scene::{CountedLight, Emitter, Patch, PlainLeg, PrimId, Scene, SensorKind};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Aabb;
 use smallvec::SmallVec;
@@ -23,11 +25,15 @@ impl PlainLeg {
         let mut leg = match &patch.shape {
             Shape::Cylinder(wall) if wall.is_uncut() => Self {
                 frame: *wall.frame(),
-                section: LegSection::Round { radius: wall.radius(), wall: prim },
+                section: LegSection::Round {
+                    radius: wall.radius(),
+                    wall: prim,
+                    elements: elements::on_round_wall(scene, patch, wall.radius())?,
+                },
                 is_one_face: true,
                 spans: SmallVec::from_elem(wall.heights(), 1),
             },
-            Shape::Flat(_) => duct::within(scene, prim)?,
+            Shape::Flat(_) => duct::within(scene, prim).or_else(|| prism::within(scene, prim))?,
             Shape::Cylinder(_)
             | Shape::Cone(_)
             | Shape::Torus(_)
@@ -36,8 +42,13 @@ impl PlainLeg {
             | Shape::ParabolicCylinder(_)
             | Shape::CompoundParabola(_) => return None,
         };
-        let is_bare = |wall: &PrimId| is_bare(scene, &scene.patches[wall.index()]);
-        if !leg.walls().iter().all(is_bare) {
+        let is_bare = match &leg.section {
+            LegSection::Round { .. } => patch.trim.is_none() && !counts_within(scene, &leg, patch),
+            LegSection::Rectangle { .. } | LegSection::Polygon { .. } => {
+                leg.walls().iter().all(|wall| is_bare(scene, &scene.patches[wall.index()]))
+            }
+        };
+        if !is_bare {
             return None;
         }
         leg.leave_out_all(scene);
@@ -81,6 +92,7 @@ impl PlainLeg {
         match &self.section {
             LegSection::Round { radius, .. } => *radius,
             LegSection::Rectangle { half, .. } => half.length(),
+            LegSection::Polygon { radius, .. } => *radius,
         }
     }
 
@@ -151,6 +163,7 @@ impl PlainLeg {
         let is_out = match &self.section {
             LegSection::Round { radius, .. } => nearest.length() > *radius,
             LegSection::Rectangle { half, .. } => nearest.abs().cmpgt(*half).any(),
+            LegSection::Polygon { radius, .. } => nearest.length() > *radius,
         };
         if is_out {
             return;
@@ -161,6 +174,25 @@ impl PlainLeg {
         });
         self.spans = parts.collect();
     }
+}
+
+/// Whether a sensor on a round wall counts light that the wall mirrors within, or light that enters through it.
+fn counts_within(scene: &Scene, leg: &PlainLeg, patch: &Patch) -> bool {
+    let on_wall = leg.frame.origin + leg.radius() * leg.frame.x;
+    let outward = Toward::of(leg.frame.x, patch.shape.normal(on_wall));
+    scene.sensors.iter().any(|sensor| {
+        sensor.entering == Some(patch.face)
+            || match &sensor.kind {
+                SensorKind::Surface(surface) if surface.faces.contains(&patch.face) => {
+                    let toward = match surface.counts {
+                        CountedLight::Incident => outward,
+                        CountedLight::Leaving => outward.opposite(),
+                    };
+                    surface.sides.include(surface.counts, toward)
+                }
+                SensorKind::Surface(_) | SensorKind::Goniometer(_) => false,
+            }
+    })
 }
 
 /// Whether nothing is on a wall: no sensor, pattern or relief.

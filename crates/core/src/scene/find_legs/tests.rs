@@ -3,11 +3,11 @@
 use crate::optics::{Finish, Medium};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
 use crate::scene::{
-    Builder, Emission, Emitter, FaceId, FacePiece, FaceSpec, Goniometer, Owner, PrimId, Sensor,
-    SensorKind, Source, StartSolids,
+    Builder, CountedLight, Emission, Emitter, FaceId, FacePiece, FaceSpec, Goniometer, Grid, Owner,
+    Passage, Place, PrimId, Seeing, Sensor, SensorKind, Sides, Source, StartSolids, SurfaceSensor,
 };
-use glam::DVec3;
-use lumiduct_base::math::Frame;
+use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Frame, circle};
 use lumiduct_base::units::FluxUnit;
 
 const RADIUS: f64 = 2.0;
@@ -109,4 +109,63 @@ fn sources_and_sensors_on_the_way_are_not_jumped_over() {
         });
     });
     assert!(entered.is_empty(), "light that enters through the wall counts");
+}
+
+/// Whether walls from each corner to the next are a leg.
+fn are_leg(corners: &[[f64; 2]]) -> bool {
+    let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+    for pair in corners.windows(2) {
+        let [a, b] = [pair[0], pair[1]].map(DVec2::from);
+        let (middle, normal) = ((0.5 * (a + b)).extend(0.0), (b - a).perp().extend(0.0));
+        let wall = Frame::from_axis_and_x(middle, normal, DVec3::Z).unwrap();
+        let region = Region::Rectangle { half_x: LENGTH, half_y: 0.5 * a.distance(b) };
+        add(&mut builder, Owner::Sheet, Shape::Flat(Flat::new(wall, region)));
+    }
+    let scene = builder.build();
+    let has_leg = |wall: usize| scene.plain_leg(PrimId::new(wall)).is_some();
+    let found: Vec<bool> = (0..corners.len() - 1).map(has_leg).collect();
+    assert!(found.iter().all(|own| *own == found[0]), "{found:?}");
+    found[0]
+}
+
+#[test]
+fn walls_over_a_convex_polygon_are_a_leg() {
+    let ring = |sides: u32, turns: u32| -> Vec<[f64; 2]> {
+        let share = |side: u32| f64::from(side * turns % sides) / f64::from(sides);
+        (0..=sides).map(|side| circle(share(side)).to_array()).collect()
+    };
+    for sides in [3, 5, 6, 8, 12] {
+        assert!(are_leg(&ring(sides, 1)), "{sides} sides");
+    }
+    assert!(are_leg(&[[0.0, 0.0], [3.0, 0.0], [2.0, 1.0], [0.5, 1.0], [0.0, 0.0]]));
+    assert!(!are_leg(&ring(13, 1)), "too many sides");
+    assert!(!are_leg(&ring(5, 2)), "a star");
+    let notched = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [2.0, 1.0], [0.0, 0.0]];
+    assert!(!are_leg(&notched), "a corner inward");
+    assert!(!are_leg(&notched[..3]), "two walls alone");
+}
+
+#[test]
+fn a_round_wall_is_plain_under_sensors_that_count_no_light_within() {
+    let watched = |counts, sides| {
+        let kind = SensorKind::Surface(SurfaceSensor {
+            faces: vec![FaceId::new(0)],
+            place: Place::Face,
+            counts,
+            sides,
+            passage: Passage::Every,
+            grid: Grid::Polar { radius: 1.0, rings: 1, sectors: 1 },
+            areas: vec![1.0],
+            covered: vec![1.0],
+            seeing: Seeing::All,
+            frame: None,
+        });
+        let sensor = Sensor { name: "wall".into(), kind, aim: Vec::new(), entering: None };
+        parts(|builder| _ = builder.add_sensor(sensor))
+    };
+    for counts in [CountedLight::Incident, CountedLight::Leaving] {
+        assert_eq!(watched(counts, Sides::Front), [[0, 50]]);
+        assert!(watched(counts, Sides::Back).is_empty());
+        assert!(watched(counts, Sides::Both).is_empty());
+    }
 }

@@ -1,21 +1,25 @@
-//! Plain legs: parts of a straight round or rectangular wall within which a path meets nothing but that wall, so that a
-//! row of mirror bounces has a closed form.
+//! Plain legs: parts of a straight wall within which a path meets nothing but that wall. Round ones may have patterns, whose
+//! elements end a row. A row of mirror bounces there has
+//! a closed form if the wall is round or rectangular, and only its motion across the axis is followed in other polygons.
 //!
 //! This module computes where such a row ends. It does not know what the wall does to light, nor how legs are found.
 
+mod polygon;
 mod reach;
 mod row;
 
+pub(in crate::scene) use crate::scene::plain_leg::polygon::{LegSide, MOST_SIDES};
 use crate::scene::plain_leg::reach::PathInLeg;
 pub use crate::scene::plain_leg::reach::RowReach;
-pub(in crate::scene) use crate::scene::plain_leg::row::LegSection;
 use crate::scene::plain_leg::row::RowInLeg;
+pub(crate) use crate::scene::plain_leg::row::{AnglesOfRow, BouncesOnWall};
+pub(in crate::scene) use crate::scene::plain_leg::row::{ElementBand, LegSection};
 use crate::scene::{PrimId, Ray};
 use glam::DVec3;
 use lumiduct_base::math::Frame;
 use smallvec::{SmallVec, smallvec};
 
-/// The plain parts within a straight round or rectangular wall.
+/// The plain parts within a straight wall.
 #[derive(Debug, Clone)]
 pub(crate) struct PlainLeg {
     /// z is the axis.
@@ -30,8 +34,8 @@ pub(crate) struct PlainLeg {
 /// A row of mirror bounces on a plain leg.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BounceRow {
-    /// Bounces by wall.
-    pub(crate) bounces: SmallVec<[(PrimId, u32); 4]>,
+    /// Their number.
+    pub(crate) count: u32,
     /// The wall of the last.
     pub(crate) last: PrimId,
     /// Distance along the path, mm.
@@ -53,11 +57,19 @@ impl PlainLeg {
         Some(RowReach { wall, is_one_face, path: PathInLeg { at, dir }, left, most })
     }
 
-    /// The row of bounces within a reach.
-    pub(crate) fn row(&self, reach: &RowReach) -> Option<BounceRow> {
-        let RowInLeg { bounces, last, length, end } = self.section.row(reach)?;
+    /// The row of bounces within a reach; `visit` is told those on each wall, and may reject the row.
+    #[inline]
+    pub(crate) fn row(
+        &self,
+        reach: &RowReach,
+        mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+    ) -> Option<BounceRow> {
+        let visit = |bounces: &BouncesOnWall| {
+            visit(&BouncesOnWall { dir: self.frame.to_world(bounces.dir), ..*bounces })
+        };
+        let RowInLeg { count, last, length, end } = self.section.row(reach, visit)?;
         let ray = Ray::new(self.frame.point_to_world(end.at), self.frame.to_world(end.dir));
-        Some(BounceRow { bounces, last, length, ray })
+        Some(BounceRow { count, last, length, ray })
     }
 
     /// All pieces of its wall.
@@ -65,6 +77,7 @@ impl PlainLeg {
         match &self.section {
             LegSection::Round { wall, .. } => smallvec![*wall],
             LegSection::Rectangle { walls, .. } => SmallVec::from(*walls),
+            LegSection::Polygon { sides, .. } => sides.iter().map(|side| side.wall).collect(),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Where a row of mirror bounces within a round or a rectangular wall ends.
 
 use crate::scene::PrimId;
+use crate::scene::plain_leg::polygon::{self, LegSide};
 use crate::scene::plain_leg::reach::{LEAST, PathInLeg, RowReach};
-use glam::DVec2;
-use smallvec::{SmallVec, smallvec};
+use glam::{DVec2, DVec3};
 
 /// Distance between the last bounces on two adjacent walls, relative to the section, below which the path is taken to end at
 /// their edge, where there is no row, 1.
@@ -12,17 +12,57 @@ const AT_EDGE: f64 = 1e-9;
 /// The cross-section of a wall about the origin, and its pieces.
 #[derive(Debug, Clone)]
 pub(in crate::scene) enum LegSection {
-    /// A circle.
-    Round { radius: f64, wall: PrimId },
+    /// A circle, and the parts of its wall where the elements of patterns are.
+    Round { radius: f64, wall: PrimId, elements: Box<[ElementBand]> },
     /// A rectangle: half of its size, and its walls at -x, +x, -y and +y.
     Rectangle { half: DVec2, walls: [PrimId; 4] },
+    /// Another convex polygon about the origin: the radius of a circle around it, and its sides.
+    Polygon { radius: f64, sides: Box<[LegSide]> },
+}
+
+/// A part of a round wall, along the axis and around it, that contains all elements of a pattern.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::scene) struct ElementBand {
+    /// Unit vector from the axis to its middle, across the axis.
+    pub(in crate::scene) toward: DVec2,
+    /// Least part along it of a point of the wall, mm.
+    pub(in crate::scene) least: f64,
+    /// Its extent along the axis, mm.
+    pub(in crate::scene) along: [f64; 2],
+}
+
+impl ElementBand {
+    /// Whether a point of the wall, across and along the axis, may be on an element.
+    #[inline]
+    fn contains(&self, place: DVec2, z: f64) -> bool {
+        z >= self.along[0] && z <= self.along[1] && place.dot(self.toward) >= self.least
+    }
+}
+
+/// The bounces of a row on one wall.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BouncesOnWall {
+    pub(crate) wall: PrimId,
+    pub(crate) count: u32,
+    /// Unit direction of the path before or after the steepest of them.
+    pub(crate) dir: DVec3,
+    pub(crate) angles: AnglesOfRow,
+}
+
+/// The angles to the wall at which the bounces of a row arrive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AnglesOfRow {
+    /// One for all.
+    One,
+    /// That of the steepest, and flatter ones.
+    Several,
 }
 
 /// A row of bounces in the frame of the leg.
 #[derive(Debug)]
 pub(super) struct RowInLeg {
-    /// Bounces by wall.
-    pub(super) bounces: SmallVec<[(PrimId, u32); 4]>,
+    /// Their number.
+    pub(super) count: u32,
     /// The wall of the last.
     pub(super) last: PrimId,
     /// Distance along the path, mm.
@@ -32,11 +72,17 @@ pub(super) struct RowInLeg {
 }
 
 impl LegSection {
-    /// The row of bounces within a reach.
-    pub(super) fn row(&self, reach: &RowReach) -> Option<RowInLeg> {
+    /// The row of bounces within a reach; `visit` is told those on each wall, and may reject the row.
+    #[inline]
+    pub(super) fn row(
+        &self,
+        reach: &RowReach,
+        visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+    ) -> Option<RowInLeg> {
         match self {
-            Self::Round { radius: _, wall: _ } => round(reach),
-            Self::Rectangle { half, walls } => rectangle((*half, walls), reach),
+            Self::Round { radius: _, wall: _, elements } => round(elements, reach, visit),
+            Self::Rectangle { half, walls } => rectangle((*half, walls), reach, visit),
+            Self::Polygon { radius: _, sides } => polygon::row(sides, reach, visit),
         }
     }
 }
@@ -45,7 +91,12 @@ impl LegSection {
 /// axis by the same angle δ and moves the position along it by the same length. With the position p, |p| = r, and the
 /// direction d across the axis, the chord is t = -2 p·d/d², and δ is the angle between p and p + t d: sin δ = t (p×d)/r²,
 /// cos δ = 1 + t (p·d)/r². After n bounces both are rotated by n δ.
-fn round(reach: &RowReach) -> Option<RowInLeg> {
+#[inline]
+fn round(
+    elements: &[ElementBand],
+    reach: &RowReach,
+    mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+) -> Option<RowInLeg> {
     let &RowReach { wall, is_one_face: _, path: PathInLeg { at, dir }, left, most } = reach;
     let (place, across) = (at.truncate(), dir.truncate());
     let inward = place.dot(across);
@@ -56,22 +107,54 @@ fn round(reach: &RowReach) -> Option<RowInLeg> {
     if !(chord > 0.0 && count >= LEAST) {
         return None;
     }
-    let turn = (chord * place.perp_dot(across)).atan2(place.length_squared() + chord * inward);
-    let turned = DVec2::from_angle(count * turn);
+    let turn = DVec2::new(place.length_squared() + chord * inward, chord * place.perp_dot(across));
+    let count = clear_bounces(elements, (at, turn, advance), count as u32);
+    if f64::from(count) < LEAST {
+        return None;
+    }
+    visit(&BouncesOnWall { wall, count, dir, angles: AnglesOfRow::One })?;
+    let turn = turn.y.atan2(turn.x);
+    let bounces = f64::from(count);
+    let turned = DVec2::from_angle(bounces * turn);
     Some(RowInLeg {
-        bounces: smallvec![(wall, count as u32)],
+        count,
         last: wall,
-        length: count * chord,
+        length: bounces * chord,
         end: PathInLeg {
-            at: turned.rotate(place).extend(at.z + count * advance),
+            at: turned.rotate(place).extend(at.z + bounces * advance),
             dir: turned.rotate(across).extend(dir.z),
         },
     })
 }
 
+/// The bounces before the first, out of a number, that may be on an element. Each turns by the direction of `turn` and advances
+/// along the axis.
+#[inline]
+fn clear_bounces(
+    elements: &[ElementBand],
+    (at, turn, advance): (DVec3, DVec2, f64),
+    most: u32,
+) -> u32 {
+    if elements.is_empty() {
+        return most;
+    }
+    let turn = turn.normalize_or_zero();
+    let (mut place, mut z) = (at.truncate(), at.z);
+    let is_clear = |_: &u32| {
+        (place, z) = (turn.rotate(place), z + advance);
+        !elements.iter().any(|band| band.contains(place, z))
+    };
+    (1..=most).take_while(is_clear).last().unwrap_or(0)
+}
+
 /// Between two parallel walls a path is mirrored to and fro, independently of its motion in the other two directions: it
 /// meets the two walls alternately, at equal distances along the path. Unfolded, the path is straight.
-fn rectangle((half, walls): (DVec2, &[PrimId; 4]), reach: &RowReach) -> Option<RowInLeg> {
+#[inline]
+fn rectangle(
+    (half, walls): (DVec2, &[PrimId; 4]),
+    reach: &RowReach,
+    mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+) -> Option<RowInLeg> {
     let &RowReach { wall, is_one_face: _, path, left, most } = reach;
     let PathInLeg { at, dir } = path;
     let start = walls.iter().position(|own| *own == wall)?;
@@ -92,24 +175,25 @@ fn rectangle((half, walls): (DVec2, &[PrimId; 4]), reach: &RowReach) -> Option<R
         return None;
     }
     let length = last[ends];
-    let (mut end, mut bounces) = (path, SmallVec::new());
+    let mut end = path;
     end.at.z += length * dir.z;
     for axis in [0, 1] {
-        let (pair, met) = (&pairs[axis], &met[axis]);
-        (end.at[axis], end.dir[axis]) = pair.after(met, length);
+        (end.at[axis], end.dir[axis]) = pairs[axis].after(&met[axis], length);
+    }
+    for axis in [0, 1] {
         // The first is the wall toward which it went.
         let [first, second] = if dir[axis] < 0.0 { [0, 1] } else { [1, 0] };
-        let by_wall = [(first, met.count.div_ceil(2)), (second, met.count / 2)];
-        bounces.extend(
-            by_wall
-                .into_iter()
-                .filter(|(_, count)| *count > 0)
-                .map(|(side, count)| (walls[2 * axis + side], count)),
-        );
+        let bounces = met[axis].count;
+        for (side, count) in [(first, bounces.div_ceil(2)), (second, bounces / 2)] {
+            let wall = walls[2 * axis + side];
+            if count > 0 {
+                visit(&BouncesOnWall { wall, count, dir: end.dir, angles: AnglesOfRow::One })?;
+            }
+        }
     }
     let toward = dir[ends] < 0.0;
     let is_low = toward == (met[ends].count % 2 == 1);
-    Some(RowInLeg { bounces, last: walls[2 * ends + usize::from(!is_low)], length, end })
+    Some(RowInLeg { count, last: walls[2 * ends + usize::from(!is_low)], length, end })
 }
 
 /// Motion to and fro between two parallel walls.

@@ -47,7 +47,7 @@ pub use model::{NamedFinish, Scene, Solid};
 pub use picture::facets::{FaceFacets, Fineness, Triangulation, shape_facets};
 pub use picture::guide::Guides;
 pub use plain_leg::RowReach;
-pub(crate) use plain_leg::{AnglesOfRow, BounceRow, BouncesOnWall, PlainLeg};
+pub(crate) use plain_leg::{AnglesOfRow, BounceRow, MetWall, PlainLeg};
 pub use ray::Ray;
 pub use sensor::grid::Grid;
 pub use sensor::pixels::Pixels;

@@ -35,7 +35,7 @@ impl FlatWall {
         })
     }
 
-    /// All of an owner.
+    /// All rectangular walls of an owner.
     pub(super) fn all_of(scene: &Scene, owner: Owner) -> Vec<Self> {
         let owned = scene.patches.iter().enumerate().filter(|(_, patch)| patch.owner == owner);
         owned.filter_map(|(index, patch)| Self::of(PrimId::new(index), patch)).collect()

@@ -26,6 +26,7 @@ pub(super) fn on_round_wall(
         }
     };
     let fields = numbers.iter().map(|number| &scene.patterns[*number].field);
+    let fields = fields.filter(|field| field.count() > 0);
     let bands = fields.map(|field| {
         let Columns { first, pitch, count, shift } = field.columns;
         let [mut along, mut across] = [[f64::INFINITY, f64::NEG_INFINITY]; 2];

@@ -42,13 +42,13 @@ impl PlainLeg {
             | Shape::ParabolicCylinder(_)
             | Shape::CompoundParabola(_) => return None,
         };
-        let is_bare = match &leg.section {
+        let is_free = match &leg.section {
             LegSection::Round { .. } => patch.trim.is_none() && !counts_within(scene, &leg, patch),
             LegSection::Rectangle { .. } | LegSection::Polygon { .. } => {
                 leg.walls().iter().all(|wall| is_bare(scene, &scene.patches[wall.index()]))
             }
         };
-        if !is_bare {
+        if !is_free {
             return None;
         }
         leg.leave_out_all(scene);
@@ -183,12 +183,13 @@ fn counts_within(scene: &Scene, leg: &PlainLeg, patch: &Patch) -> bool {
     scene.sensors.iter().any(|sensor| {
         sensor.entering == Some(patch.face)
             || match &sensor.kind {
+                // An aim makes a difference to light on the other side, too.
                 SensorKind::Surface(surface) if surface.faces.contains(&patch.face) => {
                     let toward = match surface.counts {
                         CountedLight::Incident => outward,
                         CountedLight::Leaving => outward.opposite(),
                     };
-                    surface.sides.include(surface.counts, toward)
+                    !sensor.aim.is_empty() || surface.sides.include(surface.counts, toward)
                 }
                 SensorKind::Surface(_) | SensorKind::Goniometer(_) => false,
             }

@@ -63,13 +63,16 @@ fn along(half_length: DVec3, wall: &FlatWall, walls: &[FlatWall]) -> Option<Plai
         corners.push(if is_near(a, end) { b } else { a });
     }
     let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
+    let is_outward = |side: &Side| (side.ends[0] - middle).dot(side.normal) > 0.0;
+    let is_one_side = sides.iter().all(|side| is_outward(side) == is_outward(&first));
     let sides: Vec<LegSide> = sides.iter().map(|side| leg_side(side, middle)).collect();
     let is_convex = sides.iter().all(|side| {
         let reach = |corner: &DVec2| (*corner - middle).dot(side.normal) - side.offset;
         side.offset > 0.0 && corners.iter().all(|corner| reach(corner) < SAME * size)
     });
     let radius = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-    let fits = is_convex && sides.len() >= 3;
+    // All face inward, or all outward.
+    let fits = is_convex && is_one_side && sides.len() >= 3;
     fits.then(|| PlainLeg {
         frame: frame.shifted(frame.to_world(middle.extend(0.0))),
         is_one_face: walls

@@ -113,10 +113,16 @@ fn sources_and_sensors_on_the_way_are_not_jumped_over() {
 
 /// Whether walls from each corner to the next are a leg.
 fn are_leg(corners: &[[f64; 2]]) -> bool {
+    are_leg_with(corners, None)
+}
+
+/// The same with one wall that faces the other way.
+fn are_leg_with(corners: &[[f64; 2]], turned: Option<usize>) -> bool {
     let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
-    for pair in corners.windows(2) {
+    for (index, pair) in corners.windows(2).enumerate() {
         let [a, b] = [pair[0], pair[1]].map(DVec2::from);
         let (middle, normal) = ((0.5 * (a + b)).extend(0.0), (b - a).perp().extend(0.0));
+        let normal = if turned == Some(index) { -normal } else { normal };
         let wall = Frame::from_axis_and_x(middle, normal, DVec3::Z).unwrap();
         let region = Region::Rectangle { half_x: LENGTH, half_y: 0.5 * a.distance(b) };
         add(&mut builder, Owner::Sheet, Shape::Flat(Flat::new(wall, region)));
@@ -143,6 +149,12 @@ fn walls_over_a_convex_polygon_are_a_leg() {
     let notched = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [2.0, 1.0], [0.0, 0.0]];
     assert!(!are_leg(&notched), "a corner inward");
     assert!(!are_leg(&notched[..3]), "two walls alone");
+    let square = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0], [0.0, 0.0]];
+    assert!(are_leg(&square));
+    for turned in 0..4 {
+        assert!(!are_leg_with(&square, Some(turned)), "wall {turned} of a square faces outward");
+    }
+    assert!(!are_leg_with(&ring(6, 1), Some(2)), "a wall of a hexagon faces outward");
 }
 
 #[test]

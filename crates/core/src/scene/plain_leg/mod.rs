@@ -1,6 +1,6 @@
-//! Plain legs: parts of a straight wall within which a path meets nothing but that wall. Round ones may have patterns, whose
-//! elements end a row. A row of mirror bounces there has
-//! a closed form if the wall is round or rectangular, and only its motion across the axis is followed in other polygons.
+//! Plain legs: parts of a straight wall within which a path meets nothing but that wall, and the elements of patterns on it if it
+//! is round. A row of mirror bounces has a closed form there in round and rectangular walls; in other polygons the motion
+//! across the axis is followed from side to side.
 //!
 //! This module computes where such a row ends. It does not know what the wall does to light, nor how legs are found.
 
@@ -12,7 +12,7 @@ pub(in crate::scene) use crate::scene::plain_leg::polygon::{LegSide, MOST_SIDES}
 use crate::scene::plain_leg::reach::PathInLeg;
 pub use crate::scene::plain_leg::reach::RowReach;
 use crate::scene::plain_leg::row::RowInLeg;
-pub(crate) use crate::scene::plain_leg::row::{AnglesOfRow, BouncesOnWall};
+pub(crate) use crate::scene::plain_leg::row::{AnglesOfRow, MetWall};
 pub(in crate::scene) use crate::scene::plain_leg::row::{ElementBand, LegSection};
 use crate::scene::{PrimId, Ray};
 use glam::DVec3;
@@ -40,6 +40,10 @@ pub(crate) struct BounceRow {
     pub(crate) last: PrimId,
     /// Distance along the path, mm.
     pub(crate) length: f64,
+    /// Distance from each bounce to the next, mm, if it is the same for all: on a round wall.
+    pub(crate) chord: Option<f64>,
+    /// Share of the light that the walls mirror, 1.
+    pub(crate) reflected: f64,
     /// The path after the last.
     pub(crate) ray: Ray,
 }
@@ -57,19 +61,20 @@ impl PlainLeg {
         Some(RowReach { wall, is_one_face, path: PathInLeg { at, dir }, left, most })
     }
 
-    /// The row of bounces within a reach; `visit` is told those on each wall, and may reject the row.
+    /// The row of bounces within a reach; `share_of` gives the share of light that a wall mirrors, or `None` where no row may
+    /// meet it.
     #[inline]
     pub(crate) fn row(
         &self,
         reach: &RowReach,
-        mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+        mut share_of: impl FnMut(&MetWall) -> Option<f64>,
     ) -> Option<BounceRow> {
-        let visit = |bounces: &BouncesOnWall| {
-            visit(&BouncesOnWall { dir: self.frame.to_world(bounces.dir), ..*bounces })
-        };
-        let RowInLeg { count, last, length, end } = self.section.row(reach, visit)?;
+        let in_scene =
+            |met: &MetWall| share_of(&MetWall { dir: self.frame.to_world(met.dir), ..*met });
+        let RowInLeg { count, last, length, chord, reflected, end } =
+            self.section.row(reach, in_scene)?;
         let ray = Ray::new(self.frame.point_to_world(end.at), self.frame.to_world(end.dir));
-        Some(BounceRow { count, last, length, ray })
+        Some(BounceRow { count, last, length, chord, reflected, ray })
     }
 
     /// All pieces of its wall.

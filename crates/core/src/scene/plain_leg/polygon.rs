@@ -5,15 +5,17 @@
 
 use crate::scene::PrimId;
 use crate::scene::plain_leg::reach::{LEAST, PathInLeg, RowReach};
-use crate::scene::plain_leg::row::{AnglesOfRow, BouncesOnWall, RowInLeg};
+use crate::scene::plain_leg::row::{AnglesOfRow, MetWall, RowInLeg};
 use glam::DVec2;
 
 /// Most sides.
 pub(in crate::scene) const MOST_SIDES: usize = 12;
 /// Most bounces of a row, after which a path may end by roulette.
 const MOST_BOUNCES: u32 = 512;
-/// Distance between crossings of two sides, relative to the section, below which a row ends before them, at their edge, 1.
+/// Distance across the axis between crossings of two sides, relative to the section, below which a row ends before them, 1.
 const AT_EDGE: f64 = 1e-9;
+/// Share of the light after which a row ends, 1.
+const LEAST_LEFT: f64 = 1e-6;
 
 /// A side of the section.
 #[derive(Debug, Clone, Copy)]
@@ -25,63 +27,65 @@ pub(in crate::scene) struct LegSide {
     pub(in crate::scene) wall: PrimId,
 }
 
-/// The bounces of a row on a side.
+/// What is known of a side that a row has met.
 #[derive(Debug, Clone, Copy, Default)]
-struct SideBounces {
-    count: u32,
-    /// The motion across the axis before the steepest, and its part toward the wall, 1.
-    arriving: DVec2,
+struct MetSide {
+    /// The part toward the wall of the motion in the steepest bounce, 1.
     steepness: f64,
+    /// Share of light that is mirrored then and in flatter bounces, 1.
+    share: f64,
 }
 
-/// The row of bounces within a reach; `visit` is told those on each wall, and may reject the row.
+/// The row of bounces within a reach. It ends before a wall for which `share_of` is `None`, and where hardly anything is left.
 pub(super) fn row(
-    sides: &[LegSide],
+    (radius, sides): (f64, &[LegSide]),
     reach: &RowReach,
-    mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+    mut share_of: impl FnMut(&MetWall) -> Option<f64>,
 ) -> Option<RowInLeg> {
     let &RowReach { wall, is_one_face: _, path: PathInLeg { at, dir }, left, most } = reach;
     let (mut place, mut across) = (at.truncate(), dir.truncate());
-    let start = sides.iter().position(|side| side.wall == wall)?;
+    let mut last = sides.iter().position(|side| side.wall == wall)?;
     // It has left the wall inward.
-    if across.dot(sides[start].normal) >= 0.0 {
+    if across.dot(sides[last].normal) >= 0.0 {
         return None;
     }
+    // Crossings of two sides this close along the path are at their edge.
+    let edge = AT_EDGE * radius / across.length();
     let way = left / dir.z.abs();
-    let (mut length, mut count, mut last) = (0.0, 0, start);
-    let mut by_side = [SideBounces::default(); MOST_SIDES];
-    while count < most.min(MOST_BOUNCES) {
-        let (next, step) = next_side(sides, place, across);
+    let (mut length, mut count, mut reflected) = (0.0, 0, 1.0);
+    let mut met = [MetSide::default(); MOST_SIDES];
+    while count < most.min(MOST_BOUNCES) && reflected >= LEAST_LEFT {
+        let (next, step) = next_side((sides, edge), place, across);
         let Some(next) = next.filter(|_| length + step <= way) else { break };
-        let side = &sides[next];
-        let steepness = across.dot(side.normal);
-        let own = &mut by_side[next];
-        own.count += 1;
-        if steepness > own.steepness {
-            (own.arriving, own.steepness) = (across, steepness);
+        let LegSide { normal, offset, wall } = sides[next];
+        let steepness = across.dot(normal);
+        if steepness > met[next].steepness {
+            let dir = across.extend(dir.z);
+            let angles = AnglesOfRow::UpToThis;
+            let Some(share) = share_of(&MetWall { wall, dir, angles }) else { break };
+            met[next] = MetSide { steepness, share };
         }
+        reflected *= met[next].share;
         place += step * across;
-        place += (side.offset - place.dot(side.normal)) * side.normal;
-        across -= 2.0 * steepness * side.normal;
+        place += (offset - place.dot(normal)) * normal;
+        across -= 2.0 * steepness * normal;
         (length, last) = (length + step, next);
         count += 1;
     }
     if f64::from(count) < LEAST {
         return None;
     }
-    for (side, SideBounces { count, arriving, .. }) in sides.iter().zip(by_side) {
-        if count > 0 {
-            let dir = arriving.extend(dir.z);
-            visit(&BouncesOnWall { wall: side.wall, count, dir, angles: AnglesOfRow::Several })?;
-        }
-    }
     let end = PathInLeg { at: place.extend(at.z + length * dir.z), dir: across.extend(dir.z) };
-    Some(RowInLeg { count, last: sides[last].wall, length, end })
+    Some(RowInLeg { count, last: sides[last].wall, length, chord: None, reflected, end })
 }
 
-/// The side that a path within the section meets next, and the distance along the path, mm; none where it may be an edge.
+/// The side that a path within the section meets next, and the distance along the path, mm; none within `edge` of another one.
 #[inline]
-fn next_side(sides: &[LegSide], place: DVec2, across: DVec2) -> (Option<usize>, f64) {
+fn next_side(
+    (sides, edge): (&[LegSide], f64),
+    place: DVec2,
+    across: DVec2,
+) -> (Option<usize>, f64) {
     let (mut nearest, mut step, mut second) = (None, f64::INFINITY, f64::INFINITY);
     for (index, side) in sides.iter().enumerate() {
         let toward = across.dot(side.normal);
@@ -94,5 +98,5 @@ fn next_side(sides: &[LegSide], place: DVec2, across: DVec2) -> (Option<usize>, 
             }
         }
     }
-    (nearest.filter(|_| second - step > AT_EDGE * sides[0].offset), step)
+    (nearest.filter(|_| second - step > edge), step)
 }

@@ -39,23 +39,22 @@ impl ElementBand {
     }
 }
 
-/// The bounces of a row on one wall.
+/// A wall that a row meets.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct BouncesOnWall {
+pub(crate) struct MetWall {
     pub(crate) wall: PrimId,
-    pub(crate) count: u32,
-    /// Unit direction of the path before or after the steepest of them.
+    /// Unit direction of the path before or after a bounce on it.
     pub(crate) dir: DVec3,
     pub(crate) angles: AnglesOfRow,
 }
 
-/// The angles to the wall at which the bounces of a row arrive.
+/// The angles at which the bounces of a row meet one wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AnglesOfRow {
-    /// One for all.
+    /// The same for all.
     One,
-    /// That of the steepest, and flatter ones.
-    Several,
+    /// This one, or flatter: farther from the normal.
+    UpToThis,
 }
 
 /// A row of bounces in the frame of the leg.
@@ -67,22 +66,27 @@ pub(super) struct RowInLeg {
     pub(super) last: PrimId,
     /// Distance along the path, mm.
     pub(super) length: f64,
+    /// Distance from each bounce to the next, mm, if it is the same for all.
+    pub(super) chord: Option<f64>,
+    /// Share of the light that the walls mirror, 1.
+    pub(super) reflected: f64,
     /// The path after it.
     pub(super) end: PathInLeg,
 }
 
 impl LegSection {
-    /// The row of bounces within a reach; `visit` is told those on each wall, and may reject the row.
+    /// The row of bounces within a reach; `share_of` gives the share of light that a wall mirrors, or `None` where no row may
+    /// meet it.
     #[inline]
     pub(super) fn row(
         &self,
         reach: &RowReach,
-        visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+        share_of: impl FnMut(&MetWall) -> Option<f64>,
     ) -> Option<RowInLeg> {
         match self {
-            Self::Round { radius: _, wall: _, elements } => round(elements, reach, visit),
-            Self::Rectangle { half, walls } => rectangle((*half, walls), reach, visit),
-            Self::Polygon { radius: _, sides } => polygon::row(sides, reach, visit),
+            Self::Round { radius: _, wall: _, elements } => round(elements, reach, share_of),
+            Self::Rectangle { half, walls } => rectangle((*half, walls), reach, share_of),
+            Self::Polygon { radius, sides } => polygon::row((*radius, sides), reach, share_of),
         }
     }
 }
@@ -95,7 +99,7 @@ impl LegSection {
 fn round(
     elements: &[ElementBand],
     reach: &RowReach,
-    mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+    mut share_of: impl FnMut(&MetWall) -> Option<f64>,
 ) -> Option<RowInLeg> {
     let &RowReach { wall, is_one_face: _, path: PathInLeg { at, dir }, left, most } = reach;
     let (place, across) = (at.truncate(), dir.truncate());
@@ -112,7 +116,7 @@ fn round(
     if f64::from(count) < LEAST {
         return None;
     }
-    visit(&BouncesOnWall { wall, count, dir, angles: AnglesOfRow::One })?;
+    let share = share_of(&MetWall { wall, dir, angles: AnglesOfRow::One })?;
     let turn = turn.y.atan2(turn.x);
     let bounces = f64::from(count);
     let turned = DVec2::from_angle(bounces * turn);
@@ -120,6 +124,8 @@ fn round(
         count,
         last: wall,
         length: bounces * chord,
+        chord: Some(chord),
+        reflected: share.powi(count as i32),
         end: PathInLeg {
             at: turned.rotate(place).extend(at.z + bounces * advance),
             dir: turned.rotate(across).extend(dir.z),
@@ -127,8 +133,8 @@ fn round(
     })
 }
 
-/// The bounces before the first, out of a number, that may be on an element. Each turns by the direction of `turn` and advances
-/// along the axis.
+/// Number of bounces, at most `most`, before the first that may be on an element. Each turns the path by the angle of `turn` and
+/// advances it along the axis.
 #[inline]
 fn clear_bounces(
     elements: &[ElementBand],
@@ -153,7 +159,7 @@ fn clear_bounces(
 fn rectangle(
     (half, walls): (DVec2, &[PrimId; 4]),
     reach: &RowReach,
-    mut visit: impl FnMut(&BouncesOnWall) -> Option<()>,
+    mut share_of: impl FnMut(&MetWall) -> Option<f64>,
 ) -> Option<RowInLeg> {
     let &RowReach { wall, is_one_face: _, path, left, most } = reach;
     let PathInLeg { at, dir } = path;
@@ -175,7 +181,7 @@ fn rectangle(
         return None;
     }
     let length = last[ends];
-    let mut end = path;
+    let (mut end, mut reflected) = (path, 1.0);
     end.at.z += length * dir.z;
     for axis in [0, 1] {
         (end.at[axis], end.dir[axis]) = pairs[axis].after(&met[axis], length);
@@ -187,13 +193,15 @@ fn rectangle(
         for (side, count) in [(first, bounces.div_ceil(2)), (second, bounces / 2)] {
             let wall = walls[2 * axis + side];
             if count > 0 {
-                visit(&BouncesOnWall { wall, count, dir: end.dir, angles: AnglesOfRow::One })?;
+                let met = MetWall { wall, dir: end.dir, angles: AnglesOfRow::One };
+                reflected *= share_of(&met)?.powi(count as i32);
             }
         }
     }
     let toward = dir[ends] < 0.0;
     let is_low = toward == (met[ends].count % 2 == 1);
-    Some(RowInLeg { count, last: walls[2 * ends + usize::from(!is_low)], length, end })
+    let last = walls[2 * ends + usize::from(!is_low)];
+    Some(RowInLeg { count, last, length, chord: None, reflected, end })
 }
 
 /// Motion to and fro between two parallel walls.

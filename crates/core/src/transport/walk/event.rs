@@ -139,6 +139,8 @@ pub struct Jump {
     pub absorbed_by_face: f64,
     /// Throughput that the medium absorbed.
     pub absorbed_in_medium: f64,
+    /// Throughput that arrives at the face and that leaves it, over all bounces; of round walls only, as no sensor is on others.
+    pub passes: [f64; 2],
 }
 
 /// What happens to a path, in this order: travel, arrive, depart, travel, collide, travel, ...

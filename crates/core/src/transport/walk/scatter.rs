@@ -106,7 +106,7 @@ fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Finish {
     finish.map_or(&SMOOTH, |finish| &scene.finishes[finish.index()].finish)
 }
 
-/// The finishes of a face without patterns, for light travelling toward one of its sides.
+/// The finishes of a face beside its patterns, for light travelling toward one of its sides.
 pub(super) fn faces_of(scene: &Scene, face: FaceId, toward: Toward) -> Faces<'_> {
     let face = &scene.faces[face.index()];
     Faces {

@@ -1,6 +1,6 @@
 //! Rows of mirror bounces on plain walls, taken in one step.
 //!
-//! All bounces on one wall of a row have the same angle of incidence. After n bounces on a wall of reflectance ρ, and a
+//! All bounces on one wall of a round or rectangular section have the same angle of incidence. After n bounces on a wall of reflectance ρ, and a
 //! length ℓ in a medium of absorption coefficient α, a throughput w is w exp(-α ℓ) Π ρⁿ, over all walls. If only walls
 //! absorb, or only the medium, the whole loss is theirs. If both do, it can be divided for a round wall, whose chords are
 //! all of one length and multiply the throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and
@@ -14,7 +14,7 @@ mod tests;
 
 use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
 use crate::scene::{
-    AnglesOfRow, BounceRow, BouncesOnWall, PlainLeg, PrimHit, Ray, RowReach, Scene, StartSurfaces,
+    AnglesOfRow, BounceRow, MetWall, PlainLeg, PrimHit, Ray, RowReach, Scene, StartSurfaces,
 };
 use crate::transport::walk::event::{Carries, Event, Jump, Observer, Vertex};
 use crate::transport::walk::path::Path;
@@ -76,46 +76,59 @@ fn row(
     }
     let PrimHit { face, toward, .. } = *vertex.interface.acting;
     let of_wall = mirrored(faces_of(scene, face, toward), &met.incidence, carries)?;
-    let (mut reflected, mut is_one_face, mut walls) = (1.0, true, 0);
-    let row = leg.row(reach, |bounces| {
-        let &BouncesOnWall { wall: prim, count, dir, angles } = bounces;
-        let is_at_one_angle = angles == AnglesOfRow::One;
-        let share = if prim == wall && is_at_one_angle {
-            of_wall
-        } else {
-            let patch = &scene.patches[prim.index()];
-            is_one_face &= patch.face == face;
-            // It is flat.
-            let normal = patch.shape.normal(vertex.point);
-            let normal = if normal.dot(dir) < 0.0 { normal } else { -normal };
-            let incidence = Incidence { dir, normal, ..met.incidence };
-            let faces = faces_of(scene, patch.face, toward);
-            if !is_at_one_angle && !faces.own.mirrors_alike(&incidence) {
-                return None;
+    let is_clear = medium.transmittance(path.wavelength, 1.0) == 1.0;
+    // Whether all that walls absorb is absorbed by that face.
+    let mut is_one_face = true;
+    let row = leg.row(reach, |&MetWall { wall: prim, dir, angles }| {
+        if prim == wall && angles == AnglesOfRow::One {
+            return Some(of_wall);
+        }
+        let patch = &scene.patches[prim.index()];
+        // Only legs of flat walls have others.
+        let normal = patch.shape.normal(vertex.point);
+        let normal = if normal.dot(dir) < 0.0 { normal } else { -normal };
+        let incidence = Incidence { dir, normal, ..met.incidence };
+        let faces = faces_of(scene, patch.face, toward);
+        let share = mirrored(faces, &incidence, carries)?;
+        let absorbs_elsewhere = share < 1.0 && patch.face != face;
+        is_one_face &= !absorbs_elsewhere;
+        match angles {
+            AnglesOfRow::One => Some(share),
+            AnglesOfRow::UpToThis => {
+                let is_known = mirrors_alike(faces, &incidence, carries);
+                let is_accounted = share == 1.0 || (is_clear && !absorbs_elsewhere);
+                (is_known && is_accounted).then_some(share)
             }
-            mirrored(faces, &incidence, carries)?
-        };
-        walls += 1;
-        reflected *= share.powi(count as i32);
-        Some(())
+        }
     })?;
     let (before, transmittance) =
         (path.throughput, medium.transmittance(path.wavelength, row.length));
-    let kept = transmittance * reflected;
+    let kept = transmittance * row.reflected;
     let absorbed = before * (1.0 - kept);
-    let absorbed_in_medium = match (walls, transmittance < 1.0, reflected < 1.0) {
+    let absorbed_in_medium = match (row.chord, transmittance < 1.0, row.reflected < 1.0) {
         (_, false, true) if is_one_face => 0.0,
         (_, _, false) => absorbed,
-        (1, true, true) => {
-            let chord = medium.transmittance(path.wavelength, row.length / f64::from(row.count));
+        (Some(chord), true, true) => {
+            let chord = medium.transmittance(path.wavelength, chord);
             // 1 - q is not small: the wall absorbs.
             before * (1.0 - chord) * (1.0 - kept) / (1.0 - chord * of_wall)
         }
         _ => return None,
     };
     let absorbed_by_face = absorbed - absorbed_in_medium;
-    let jump = Jump { face, medium: path.medium, absorbed_by_face, absorbed_in_medium };
+    let passes = row.chord.map_or([0.0; 2], |chord| {
+        let chord = medium.transmittance(path.wavelength, chord);
+        let arriving = before * chord * powers(chord * of_wall, row.count);
+        [arriving, arriving * of_wall]
+    });
+    let medium = path.medium;
+    let jump = Jump { face, medium, absorbed_by_face, absorbed_in_medium, passes };
     Some((row, RowLosses { kept, jump }))
+}
+
+/// The sum of the first powers of a number, from the power 0.
+fn powers(q: f64, count: u32) -> f64 {
+    if q == 1.0 { f64::from(count) } else { (1.0 - q.powi(count as i32)) / (1.0 - q) }
 }
 
 /// The share of arriving light that a wall mirrors, if it only mirrors and no light comes through from behind.
@@ -126,4 +139,13 @@ fn mirrored(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> Option
             Carries::Radiance => faces.behind.radiance_chances(incidence).transmitted == 0.0,
         };
     is_mirror.then(|| faces.own.shares(incidence).reflected)
+}
+
+/// Whether it mirrors light at this and at all flatter angles in the same proportion, and no light comes through from behind.
+fn mirrors_alike(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> bool {
+    faces.own.mirrors_alike(incidence)
+        && match carries {
+            Carries::Flux => true,
+            Carries::Radiance => faces.behind.mirrors_alike(incidence),
+        }
 }

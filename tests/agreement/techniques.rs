@@ -111,12 +111,14 @@ fn each_agrees(what: &str, text: &str, lit: usize) {
 #[test]
 fn each_alone_in_tubes() {
     each_agrees("mirror", &tube("{ specular = { reflectance = 0.9 } }"), 4);
+    each_agrees("narrow", &tube("{ gaussian = { sigma_deg = 1, reflectance = 0.9 } }"), 13);
+    each_agrees("broad", &tube("{ gaussian = { sigma_deg = 15, reflectance = 0.9 } }"), 13);
     each_agrees("facets", &tube("{ ggx = { roughness = 0.2, reflectance = 0.9 } }"), 13);
     each_agrees("white", &tube("{ lambertian = { reflectance = 0.8 } }"), 13);
     each_agrees(
         "mirror, narrow and broad",
         &tube(
-            "{ mixture = [{ weight = 2, finish = { specular = { reflectance = 0.95 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 1, reflectance = 0.9 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 15, reflectance = 0.9 } } }] }",
+            "{ mixture = [{ weight = 2, finish = { specular = { reflectance = 0.95 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 2, reflectance = 0.9 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 20, reflectance = 0.9 } } }] }",
         ),
         13,
     );

@@ -225,12 +225,11 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 return;
             }
             let photon = &passing[index];
-            let (_, met) = match known.take() {
-                Some(last) if last.0 == index => known.insert(last),
-                Some(_) | None => {
-                    known.insert((index, arriving((scene, has_grain), &keys[index], photon)))
-                }
-            };
+            if known.as_ref().is_some_and(|(last, _)| *last != index) {
+                known = None;
+            }
+            let (_, met) = known
+                .get_or_insert_with(|| (index, arriving((scene, has_grain), &keys[index], photon)));
             near |= 1 << index;
             let Some(shares) = weights.flux(record, met) else { return };
             work.pairs += 1;

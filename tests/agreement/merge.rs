@@ -270,8 +270,8 @@ fn noise_where_forward_is_best() {
     noise_is_that_of(Best::Forward, &tube_with(100, "radius_mm = 0.5", exit), gathering);
 }
 
-/// Weights that rest on roughly known chances of the two sides: the variance of `mis` is 1.94 times that of `forward` at the
-/// facets and 0.94 times at the film.
+/// The weights rest on chances of the two sides that are only roughly known. The variance of `mis` is 1.94 times that of
+/// `forward` at the facets and 0.94 times at the film.
 #[test]
 fn noise_at_prism_film_and_narrow_facets() {
     const MOST: f64 = 3.0;

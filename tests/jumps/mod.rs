@@ -76,10 +76,10 @@ fn rows_of_bounces_taken_at_once_change_no_light_of_a_shipped_scene() {
 /// A tube with holes and black dots along all of it, and a rod over a polygon.
 const PATTERNS_AND_POLYGON: &str = r#"
 [finishes]
-mirror = { specular = { reflectance = 1 } }
+mirror = { specular = { reflectance = 0.97 } }
 [sheets.duct.tube]
 profile = { circle = { radius_mm = 3 } }
-path = [{ straight_mm = 130 }]
+path = [{ straight_mm = 60 }, { straight_mm = 70 }]
 finish = "mirror"
 [patterns.holes]
 on = "duct.wall"
@@ -108,6 +108,7 @@ flux_lm = 1
 at = { position_mm = [22, 2.5, -0.1] }
 [sensors]
 holes = { plane = { cells = [1, 6] }, on = "duct.wall", counts = "leaving", side = "front" }
+shadow = { plane = {}, on = "duct.wall", counts = "incident", side = "front" }
 exit = { plane = {}, on = "duct.exit", counts = "incident" }
 end = { plane = {}, on = "rod.exit", counts = "leaving" }
 "#;

@@ -79,7 +79,8 @@ impl FinishModel for SmoothInterface {
     /// Under total reflection.
     fn only_mirrors(&self, incidence: &Incidence) -> bool {
         let Incidence { index_from, index_to, .. } = *incidence;
-        fresnel::cos_transmitted(incidence.cos(), index_from, index_to).is_none()
+        index_from > index_to
+            && fresnel::cos_transmitted(incidence.cos(), index_from, index_to).is_none()
     }
 
     fn mirrors_alike(&self, incidence: &Incidence) -> bool {

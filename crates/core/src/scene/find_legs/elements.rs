@@ -17,6 +17,9 @@ pub(super) fn on_round_wall(
     radius: f64,
 ) -> Option<Box<[ElementBand]>> {
     let numbers = &scene.faces[patch.face.index()].patterns;
+    if numbers.is_empty() {
+        return Some(Box::default());
+    }
     // Patterns refer to the chart of the whole guide.
     let (offset, scale) = match patch.chart {
         None => (DVec2::ZERO, DVec2::ONE),

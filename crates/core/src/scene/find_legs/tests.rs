@@ -159,7 +159,7 @@ fn walls_over_a_convex_polygon_are_a_leg() {
 
 #[test]
 fn a_round_wall_is_plain_under_sensors_that_count_no_light_within() {
-    let watched = |counts, sides| {
+    let watched = |counts, sides, aim| {
         let kind = SensorKind::Surface(SurfaceSensor {
             faces: vec![FaceId::new(0)],
             place: Place::Face,
@@ -172,12 +172,13 @@ fn a_round_wall_is_plain_under_sensors_that_count_no_light_within() {
             seeing: Seeing::All,
             frame: None,
         });
-        let sensor = Sensor { name: "wall".into(), kind, aim: Vec::new(), entering: None };
+        let sensor = Sensor { name: "wall".into(), kind, aim, entering: None };
         parts(|builder| _ = builder.add_sensor(sensor))
     };
     for counts in [CountedLight::Incident, CountedLight::Leaving] {
-        assert_eq!(watched(counts, Sides::Front), [[0, 50]]);
-        assert!(watched(counts, Sides::Back).is_empty());
-        assert!(watched(counts, Sides::Both).is_empty());
+        assert_eq!(watched(counts, Sides::Front, Vec::new()), [[0, 50]]);
+        assert!(watched(counts, Sides::Back, Vec::new()).is_empty());
+        assert!(watched(counts, Sides::Both, Vec::new()).is_empty());
+        assert!(watched(counts, Sides::Front, vec![FaceId::new(0)]).is_empty(), "an aim");
     }
 }

@@ -62,17 +62,18 @@ impl PlainLeg {
     }
 
     /// The row of bounces within a reach; `share_of` gives the share of light that a wall mirrors, or `None` where no row may
-    /// meet it.
+    /// meet it. `absorb` takes what each flat wall absorbs of the light at the start of the row, where nothing else absorbs.
     #[inline]
     pub(crate) fn row(
         &self,
         reach: &RowReach,
         mut share_of: impl FnMut(&MetWall) -> Option<f64>,
+        absorb: impl FnMut(PrimId, f64),
     ) -> Option<BounceRow> {
         let in_scene =
             |met: &MetWall| share_of(&MetWall { dir: self.frame.to_world(met.dir), ..*met });
         let RowInLeg { count, last, length, chord, reflected, end } =
-            self.section.row(reach, in_scene)?;
+            self.section.row(reach, in_scene, absorb)?;
         let ray = Ray::new(self.frame.point_to_world(end.at), self.frame.to_world(end.dir));
         Some(BounceRow { count, last, length, chord, reflected, ray })
     }

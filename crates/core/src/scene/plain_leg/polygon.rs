@@ -5,16 +5,14 @@
 
 use crate::scene::PrimId;
 use crate::scene::plain_leg::reach::{LEAST, PathInLeg, RowReach};
-use crate::scene::plain_leg::row::{AnglesOfRow, MetWall, RowInLeg};
+use crate::scene::plain_leg::row::{AnglesOfRow, MOST_BOUNCES, MetWall, RowInLeg};
 use glam::DVec2;
 
 /// Most sides.
 pub(in crate::scene) const MOST_SIDES: usize = 12;
-/// Most bounces of a row, after which a path may end by roulette.
-const MOST_BOUNCES: u32 = 512;
 /// Distance across the axis between crossings of two sides, relative to the section, below which a row ends before them, 1.
 const AT_EDGE: f64 = 1e-9;
-/// Share of the light after which a row ends, 1.
+/// Share of the light below which a row ends, 1.
 const LEAST_LEFT: f64 = 1e-6;
 
 /// A side of the section.
@@ -30,17 +28,21 @@ pub(in crate::scene) struct LegSide {
 /// What is known of a side that a row has met.
 #[derive(Debug, Clone, Copy, Default)]
 struct MetSide {
-    /// The part toward the wall of the motion in the steepest bounce, 1.
+    /// Cosine of the angle of incidence of its steepest bounce, 1.
     steepness: f64,
     /// Share of light that is mirrored then and in flatter bounces, 1.
     share: f64,
+    /// Share of the light at the start of the row that it absorbed, 1.
+    absorbed: f64,
 }
 
-/// The row of bounces within a reach. It ends before a wall for which `share_of` is `None`, and where hardly anything is left.
+/// The row of bounces within a reach, see `LegSection::row`. It ends before a wall for which `share_of` is `None`, and where
+/// hardly anything is left.
 pub(super) fn row(
     (radius, sides): (f64, &[LegSide]),
     reach: &RowReach,
     mut share_of: impl FnMut(&MetWall) -> Option<f64>,
+    mut absorb: impl FnMut(PrimId, f64),
 ) -> Option<RowInLeg> {
     let &RowReach { wall, is_one_face: _, path: PathInLeg { at, dir }, left, most } = reach;
     let (mut place, mut across) = (at.truncate(), dir.truncate());
@@ -61,11 +63,13 @@ pub(super) fn row(
         let steepness = across.dot(normal);
         if steepness > met[next].steepness {
             let dir = across.extend(dir.z);
-            let angles = AnglesOfRow::UpToThis;
+            let angles = AnglesOfRow::ThisAndFlatter;
             let Some(share) = share_of(&MetWall { wall, dir, angles }) else { break };
-            met[next] = MetSide { steepness, share };
+            met[next] = MetSide { steepness, share, ..met[next] };
         }
-        reflected *= met[next].share;
+        let after = reflected * met[next].share;
+        met[next].absorbed += reflected - after;
+        reflected = after;
         place += step * across;
         place += (offset - place.dot(normal)) * normal;
         across -= 2.0 * steepness * normal;
@@ -74,6 +78,9 @@ pub(super) fn row(
     }
     if f64::from(count) < LEAST {
         return None;
+    }
+    for (side, met) in sides.iter().zip(&met).filter(|(_, met)| met.absorbed > 0.0) {
+        absorb(side.wall, met.absorbed);
     }
     let end = PathInLeg { at: place.extend(at.z + length * dir.z), dir: across.extend(dir.z) };
     Some(RowInLeg { count, last: sides[last].wall, length, chord: None, reflected, end })

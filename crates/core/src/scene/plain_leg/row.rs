@@ -8,6 +8,10 @@ use glam::{DVec2, DVec3};
 /// Distance between the last bounces on two adjacent walls, relative to the section, below which the path is taken to end at
 /// their edge, where there is no row, 1.
 const AT_EDGE: f64 = 1e-9;
+/// Most bounces of a row that are followed one by one, after which a path may end by roulette.
+pub(super) const MOST_BOUNCES: u32 = 512;
+/// Share of the light below which it no longer matters which wall absorbs it, 1.
+const NOTHING_LEFT: f64 = 1e-20;
 
 /// The cross-section of a wall about the origin, and its pieces.
 #[derive(Debug, Clone)]
@@ -25,7 +29,7 @@ pub(in crate::scene) enum LegSection {
 pub(in crate::scene) struct ElementBand {
     /// Unit vector from the axis to its middle, across the axis.
     pub(in crate::scene) toward: DVec2,
-    /// Least part along it of a point of the wall, mm.
+    /// Least component along it of the points of the band, mm.
     pub(in crate::scene) least: f64,
     /// Its extent along the axis, mm.
     pub(in crate::scene) along: [f64; 2],
@@ -53,8 +57,8 @@ pub(crate) struct MetWall {
 pub(crate) enum AnglesOfRow {
     /// The same for all.
     One,
-    /// This one, or flatter: farther from the normal.
-    UpToThis,
+    /// This one and flatter ones, farther from the normal.
+    ThisAndFlatter,
 }
 
 /// A row of bounces in the frame of the leg.
@@ -76,17 +80,20 @@ pub(super) struct RowInLeg {
 
 impl LegSection {
     /// The row of bounces within a reach; `share_of` gives the share of light that a wall mirrors, or `None` where no row may
-    /// meet it.
+    /// meet it. `absorb` takes what each flat wall absorbs of the light at the start of the row, where nothing else absorbs.
     #[inline]
     pub(super) fn row(
         &self,
         reach: &RowReach,
         share_of: impl FnMut(&MetWall) -> Option<f64>,
+        absorb: impl FnMut(PrimId, f64),
     ) -> Option<RowInLeg> {
         match self {
             Self::Round { radius: _, wall: _, elements } => round(elements, reach, share_of),
-            Self::Rectangle { half, walls } => rectangle((*half, walls), reach, share_of),
-            Self::Polygon { radius, sides } => polygon::row((*radius, sides), reach, share_of),
+            Self::Rectangle { half, walls } => rectangle((*half, walls), reach, share_of, absorb),
+            Self::Polygon { radius, sides } => {
+                polygon::row((*radius, sides), reach, share_of, absorb)
+            }
         }
     }
 }
@@ -150,7 +157,7 @@ fn clear_bounces(
         (place, z) = (turn.rotate(place), z + advance);
         !elements.iter().any(|band| band.contains(place, z))
     };
-    (1..=most).take_while(is_clear).last().unwrap_or(0)
+    (1..=most.min(MOST_BOUNCES)).take_while(is_clear).last().unwrap_or(0)
 }
 
 /// Between two parallel walls a path is mirrored to and fro, independently of its motion in the other two directions: it
@@ -160,8 +167,9 @@ fn rectangle(
     (half, walls): (DVec2, &[PrimId; 4]),
     reach: &RowReach,
     mut share_of: impl FnMut(&MetWall) -> Option<f64>,
+    mut absorb: impl FnMut(PrimId, f64),
 ) -> Option<RowInLeg> {
-    let &RowReach { wall, is_one_face: _, path, left, most } = reach;
+    let &RowReach { wall, is_one_face, path, left, most } = reach;
     let PathInLeg { at, dir } = path;
     let start = walls.iter().position(|own| *own == wall)?;
     // It has left the wall inward.
@@ -186,15 +194,25 @@ fn rectangle(
     for axis in [0, 1] {
         (end.at[axis], end.dir[axis]) = pairs[axis].after(&met[axis], length);
     }
+    let mut shares = [[1.0; 2]; 2];
     for axis in [0, 1] {
-        // The first is the wall toward which it went.
-        let [first, second] = if dir[axis] < 0.0 { [0, 1] } else { [1, 0] };
         let bounces = met[axis].count;
-        for (side, count) in [(first, bounces.div_ceil(2)), (second, bounces / 2)] {
-            let wall = walls[2 * axis + side];
+        for (order, count) in [bounces.div_ceil(2), bounces / 2].into_iter().enumerate() {
             if count > 0 {
+                let wall = walls[pairs[axis].wall(axis, order)];
                 let met = MetWall { wall, dir: end.dir, angles: AnglesOfRow::One };
-                reflected *= share_of(&met)?.powi(count as i32);
+                shares[axis][order] = share_of(&met)?;
+                reflected *= shares[axis][order].powi(count as i32);
+            }
+        }
+    }
+    if reflected < 1.0 && is_one_face {
+        absorb(wall, 1.0 - reflected);
+    } else if reflected < 1.0 {
+        let absorbed = absorbed(&pairs, met, shares);
+        for axis in [0, 1] {
+            for order in [0, 1] {
+                absorb(walls[pairs[axis].wall(axis, order)], absorbed[axis][order]);
             }
         }
     }
@@ -202,6 +220,27 @@ fn rectangle(
     let is_low = toward == (met[ends].count % 2 == 1);
     let last = walls[2 * ends + usize::from(!is_low)];
     Some(RowInLeg { count, last, length, chord: None, reflected, end })
+}
+
+/// What each wall absorbs of a light of 1, by pair, the wall that is met first before the other, in the order of the bounces.
+fn absorbed(
+    pairs: &[ParallelWalls; 2],
+    met: [WallBounces; 2],
+    shares: [[f64; 2]; 2],
+) -> [[f64; 2]; 2] {
+    let mut absorbed = [[0.0; 2]; 2];
+    let (mut next, mut order, mut left) = (pairs.map(|pair| pair.first), [0, 0], 1.0);
+    let mut to_go = met.map(|met| met.count);
+    while to_go != [0, 0] && left > NOTHING_LEFT {
+        let axis = usize::from(to_go[0] == 0 || (to_go[1] > 0 && next[1] < next[0]));
+        let after = left * shares[axis][order[axis]];
+        absorbed[axis][order[axis]] += left - after;
+        left = after;
+        next[axis] += pairs[axis].period;
+        order[axis] = 1 - order[axis];
+        to_go[axis] -= 1;
+    }
+    absorbed
 }
 
 /// Motion to and fro between two parallel walls.
@@ -233,6 +272,12 @@ impl ParallelWalls {
             first: if dir == 0.0 { f64::INFINITY } else { first },
             period: (2.0 * half / dir).abs(),
         }
+    }
+
+    /// The place among the walls of a rectangle of the one that is met first, or of the other: -x, +x, -y, +y.
+    fn wall(&self, axis: usize, order: usize) -> usize {
+        let first = usize::from(self.dir >= 0.0);
+        2 * axis + if order == 0 { first } else { 1 - first }
     }
 
     /// The bounces up to a distance along the path.

@@ -264,13 +264,14 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
             Event::Jump(jump) => {
                 self.readings.segments += 1;
                 self.add(layout.absorbed_in_medium(jump.medium), jump.absorbed_in_medium);
-                self.add(layout.absorbed_by_face(jump.face), jump.absorbed_by_face);
+                for &(face, absorbed) in jump.absorbed_by_faces {
+                    self.add(layout.absorbed_by_face(face), absorbed);
+                }
                 // Sensors on a wall that a row meets count on the other side.
                 for &(id, sensor) in &self.run.sensors.faces[jump.face.index()] {
-                    let [arriving, leaving] = jump.passes;
                     let seen = match sensor.counts {
-                        CountedLight::Incident => arriving,
-                        CountedLight::Leaving => leaving,
+                        CountedLight::Incident => jump.arriving,
+                        CountedLight::Leaving => jump.leaving,
                     };
                     self.add(layout.other_side(id), seen);
                 }

@@ -66,7 +66,7 @@ impl Observer for Collecting<'_, '_> {
     }
 
     fn limit_row(&self, path: &Path, reach: &mut RowReach) {
-        // Plain walls only mirror, so the only records on them are those of vertex D.
+        // The bounces of a row only mirror, so the only records on them are those of vertex D.
         reach.end_after(self.gather.settings.depth.saturating_sub(path.depth));
     }
 

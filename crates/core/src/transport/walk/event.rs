@@ -130,17 +130,19 @@ pub struct MetEmission {
 
 /// A row of mirror bounces between which nothing else happens, taken at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jump {
-    /// The face that mirrors.
+pub struct Jump<'a> {
+    /// The face of the last bounce before it.
     pub face: FaceId,
     /// The medium.
     pub medium: MediumId,
-    /// Throughput that the face absorbed.
-    pub absorbed_by_face: f64,
+    /// Throughput that each face absorbed.
+    pub absorbed_by_faces: &'a [(FaceId, f64)],
     /// Throughput that the medium absorbed.
     pub absorbed_in_medium: f64,
-    /// Throughput that arrives at the face and that leaves it, over all bounces; of round walls only, as no sensor is on others.
-    pub passes: [f64; 2],
+    /// Throughput that arrives at a round wall, summed over all bounces; 0 at flat walls, on which no sensor is.
+    pub arriving: f64,
+    /// Throughput that leaves it.
+    pub leaving: f64,
 }
 
 /// What happens to a path, in this order: travel, arrive, depart, travel, collide, travel, ...
@@ -157,7 +159,7 @@ pub enum Event<'a> {
     /// The interface sent it on; the acting face absorbed the loss of throughput.
     Depart(&'a Vertex<'a>, &'a Departure),
     /// It went from bounce to bounce; only observers that [allow it](Observer::allows_jumps) see this.
-    Jump(&'a Jump),
+    Jump(&'a Jump<'a>),
     /// The acting face absorbed all of it.
     Absorbed(&'a Vertex<'a>),
     /// A sensor counts it.

@@ -1,24 +1,26 @@
 //! Rows of mirror bounces on plain walls, taken in one step.
 //!
-//! All bounces on one wall of a round or rectangular section have the same angle of incidence. After n bounces on a wall of reflectance ρ, and a
-//! length ℓ in a medium of absorption coefficient α, a throughput w is w exp(-α ℓ) Π ρⁿ, over all walls. If only walls
-//! absorb, or only the medium, the whole loss is theirs. If both do, it can be divided for a round wall, whose chords are
-//! all of one length and multiply the throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and
-//! the wall the rest. Between flat walls, and where walls of several faces absorb, such a row is taken step by step. No
-//! random number is drawn, so the path is the same as step by step except for rounding; roulette waits until hardly anything
-//! is left, or until the next bounce that starts no row. In polygons the bounces on one wall have several angles: there all
-//! must be mirrored alike, as in total reflection.
+//! All bounces on one wall of a round or rectangular section have the same angle of incidence. After n bounces on a wall of
+//! reflectance ρ, and a length ℓ in a medium of absorption coefficient α, a throughput w is w exp(-α ℓ) Π ρⁿ, over all walls.
+//! If only walls absorb, or only the medium, the whole loss is theirs; of flat walls of several faces, each takes its part in
+//! the order of the bounces. If both do, the loss can be divided for a round wall, whose chords are all of one length and
+//! multiply the throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and the wall the rest.
+//! Between flat walls such a row is taken step by step. In polygons the bounces on one wall have several angles: there all
+//! must be mirrored alike, as in total reflection. No random number is drawn, so the path is the same as step by step except
+//! for rounding; roulette waits until hardly anything is left, or until the next bounce that starts no row.
 
 #[cfg(test)]
 mod tests;
 
 use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
 use crate::scene::{
-    AnglesOfRow, BounceRow, MetWall, PlainLeg, PrimHit, Ray, RowReach, Scene, StartSurfaces,
+    AnglesOfRow, BounceRow, FaceId, MetWall, PlainLeg, PrimHit, PrimId, Ray, RowReach, Scene,
+    StartSurfaces,
 };
 use crate::transport::walk::event::{Carries, Event, Jump, Observer, Vertex};
 use crate::transport::walk::path::Path;
 use crate::transport::walk::scatter::{faces_of, facing};
+use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
 /// Takes a path that a vertex on a plain leg has just mirrored to the last bounce of the row that follows: the ray from
@@ -43,23 +45,38 @@ pub(super) fn jump<V: Observer>(
     if reach.is_too_short() {
         return stay;
     }
-    let Some((row, losses)) = row(scene, path, vertex, (leg, &reach), V::CARRIES) else {
+    let Some((row, light)) = row(scene, path, vertex, (leg, &reach), V::CARRIES) else {
         return stay;
     };
-    path.throughput *= losses.kept;
+    path.throughput *= light.kept;
     path.depth += row.count;
     path.ray = row.ray;
     path.on = StartSurfaces::from(Some(row.last));
-    observer.see(path, Event::Jump(&losses.jump))?;
+    let jump = Jump {
+        face: vertex.interface.acting.face,
+        medium: path.medium,
+        absorbed_by_faces: &light.absorbed_by_faces,
+        absorbed_in_medium: light.absorbed_in_medium,
+        arriving: light.arriving,
+        leaving: light.leaving,
+    };
+    observer.see(path, Event::Jump(&jump))?;
     ControlFlow::Continue(path.ray)
 }
 
-/// What a row takes from a path.
-struct RowLosses {
+/// What becomes of the light of a path on a row.
+struct RowLight {
     /// Share of the throughput that is left, 1.
     kept: f64,
-    jump: Jump,
+    absorbed_by_faces: FaceLosses,
+    absorbed_in_medium: f64,
+    /// At a round wall, over all bounces.
+    arriving: f64,
+    leaving: f64,
 }
+
+/// Throughput that faces absorb.
+type FaceLosses = SmallVec<[(FaceId, f64); 4]>;
 
 /// The row that follows a vertex, if all of it is known.
 fn row(
@@ -68,7 +85,7 @@ fn row(
     vertex: &Vertex<'_>,
     (leg, reach): (&PlainLeg, &RowReach),
     carries: Carries,
-) -> Option<(BounceRow, RowLosses)> {
+) -> Option<(BounceRow, RowLight)> {
     let medium = &scene.media[path.medium.index()];
     let (wall, met) = (reach.wall, facing(scene, path, vertex));
     if medium.scattering().is_some() {
@@ -77,53 +94,59 @@ fn row(
     let PrimHit { face, toward, .. } = *vertex.interface.acting;
     let of_wall = mirrored(faces_of(scene, face, toward), &met.incidence, carries)?;
     let is_clear = medium.transmittance(path.wavelength, 1.0) == 1.0;
-    // Whether all that walls absorb is absorbed by that face.
-    let mut is_one_face = true;
-    let row = leg.row(reach, |&MetWall { wall: prim, dir, angles }| {
+    let face_of = |wall: PrimId| scene.patches[wall.index()].face;
+    let share_of = |&MetWall { wall: prim, dir, angles }: &MetWall| {
         if prim == wall && angles == AnglesOfRow::One {
             return Some(of_wall);
         }
-        let patch = &scene.patches[prim.index()];
         // Only legs of flat walls have others.
-        let normal = patch.shape.normal(vertex.point);
+        let normal = scene.patches[prim.index()].shape.normal(vertex.point);
         let normal = if normal.dot(dir) < 0.0 { normal } else { -normal };
         let incidence = Incidence { dir, normal, ..met.incidence };
-        let faces = faces_of(scene, patch.face, toward);
+        let faces = faces_of(scene, face_of(prim), toward);
         let share = mirrored(faces, &incidence, carries)?;
-        let absorbs_elsewhere = share < 1.0 && patch.face != face;
-        is_one_face &= !absorbs_elsewhere;
-        match angles {
-            AnglesOfRow::One => Some(share),
-            AnglesOfRow::UpToThis => {
-                let is_known = mirrors_alike(faces, &incidence, carries);
-                let is_accounted = share == 1.0 || (is_clear && !absorbs_elsewhere);
-                (is_known && is_accounted).then_some(share)
+        let is_known = match angles {
+            AnglesOfRow::One => true,
+            AnglesOfRow::ThisAndFlatter => {
+                mirrors_alike(faces, &incidence, carries) && (is_clear || share == 1.0)
             }
-        }
+        };
+        is_known.then_some(share)
+    };
+    let before = path.throughput;
+    let mut absorbed_by_faces = FaceLosses::new();
+    let row = leg.row(reach, share_of, |wall, absorbed| {
+        add_loss(&mut absorbed_by_faces, face_of(wall), before * absorbed);
     })?;
-    let (before, transmittance) =
-        (path.throughput, medium.transmittance(path.wavelength, row.length));
+    let transmittance = medium.transmittance(path.wavelength, row.length);
     let kept = transmittance * row.reflected;
     let absorbed = before * (1.0 - kept);
+    let (mut arriving, mut leaving) = (0.0, 0.0);
     let absorbed_in_medium = match (row.chord, transmittance < 1.0, row.reflected < 1.0) {
-        (_, false, true) if is_one_face => 0.0,
-        (_, _, false) => absorbed,
+        (_, true, false) => absorbed,
+        (None, true, true) => return None,
+        (_, false, _) => 0.0,
         (Some(chord), true, true) => {
             let chord = medium.transmittance(path.wavelength, chord);
             // 1 - q is not small: the wall absorbs.
             before * (1.0 - chord) * (1.0 - kept) / (1.0 - chord * of_wall)
         }
-        _ => return None,
     };
-    let absorbed_by_face = absorbed - absorbed_in_medium;
-    let passes = row.chord.map_or([0.0; 2], |chord| {
+    if let Some(chord) = row.chord {
         let chord = medium.transmittance(path.wavelength, chord);
-        let arriving = before * chord * powers(chord * of_wall, row.count);
-        [arriving, arriving * of_wall]
-    });
-    let medium = path.medium;
-    let jump = Jump { face, medium, absorbed_by_face, absorbed_in_medium, passes };
-    Some((row, RowLosses { kept, jump }))
+        arriving = before * chord * powers(chord * of_wall, row.count);
+        leaving = arriving * of_wall;
+        add_loss(&mut absorbed_by_faces, face, absorbed - absorbed_in_medium);
+    }
+    let light = RowLight { kept, absorbed_by_faces, absorbed_in_medium, arriving, leaving };
+    Some((row, light))
+}
+
+fn add_loss(losses: &mut FaceLosses, face: FaceId, absorbed: f64) {
+    match losses.iter_mut().find(|(own, _)| *own == face) {
+        Some((_, sum)) => *sum += absorbed,
+        None => losses.push((face, absorbed)),
+    }
 }
 
 /// The sum of the first powers of a number, from the power 0.
@@ -141,7 +164,8 @@ fn mirrored(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> Option
     is_mirror.then(|| faces.own.shares(incidence).reflected)
 }
 
-/// Whether it mirrors light at this and at all flatter angles in the same proportion, and no light comes through from behind.
+/// Whether it mirrors light at this and at all flatter angles in the same proportion, seen by gather paths from behind, too,
+/// so that no light comes through.
 fn mirrors_alike(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> bool {
     faces.own.mirrors_alike(incidence)
         && match carries {

@@ -123,7 +123,7 @@ fn the_light_of_a_lossless_duct_is_confirmed_to_be_even() {
 fn holes_of_a_lossy_tube_follow_from_the_illuminance_of_its_wall() {
     let found = found(
         LOSSY,
-        &study(2_400_000, "limits = { from_mm = 2, to_mm = 8 }\nmin_over_max = 0.96\ndamping = 1"),
+        &study(9_600_000, "limits = { from_mm = 2, to_mm = 8 }\nmin_over_max = 0.96\ndamping = 1"),
     );
     assert_eq!(found.report.ending, Ending::Reached, "{:?}", found.report.steps);
     let flux = [0.043_386_677_63_f64, 0.033_917_134_81, 0.026_702_825_02];

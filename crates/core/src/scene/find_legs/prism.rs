@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 /// A wall as a side of the polygon across the axis.
 #[derive(Debug, Clone, Copy)]
-struct Side {
+struct PrismSide {
     wall: FlatWall,
     ends: [DVec2; 2],
     normal: DVec2,
@@ -31,20 +31,20 @@ fn along(half_length: DVec3, wall: &FlatWall, walls: &[FlatWall]) -> Option<Plai
     let frame = Frame::from_axis_and_x(wall.middle, axis, wall.normal)?;
     let size = length + wall.sides[0].length() + wall.sides[1].length();
     let is_near = |a: DVec2, b: DVec2| a.distance(b) < SAME * size;
-    let side = |wall: &FlatWall| -> Option<Side> {
+    let side = |wall: &FlatWall| -> Option<PrismSide> {
         let across = wall.sides.into_iter().find(|side| side.dot(axis).abs() < SAME * size)?;
         let middle = frame.point_to_local(wall.middle);
         let half = frame.to_local(across).truncate();
         let is_as_long = (wall.extent(axis) - length).abs() < SAME * size
             && middle.z.abs() < SAME * size
             && wall.normal.dot(axis).abs() < SAME;
-        is_as_long.then(|| Side {
+        is_as_long.then(|| PrismSide {
             wall: *wall,
             ends: [middle.truncate() - half, middle.truncate() + half],
             normal: frame.to_local(wall.normal).truncate(),
         })
     };
-    let others: Vec<Side> = walls.iter().filter_map(side).collect();
+    let others: Vec<PrismSide> = walls.iter().filter_map(side).collect();
     let first = side(wall)?;
     let mut sides = vec![first];
     let mut corners = vec![first.ends[1]];
@@ -63,7 +63,7 @@ fn along(half_length: DVec3, wall: &FlatWall, walls: &[FlatWall]) -> Option<Plai
         corners.push(if is_near(a, end) { b } else { a });
     }
     let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
-    let is_outward = |side: &Side| (side.ends[0] - middle).dot(side.normal) > 0.0;
+    let is_outward = |side: &PrismSide| (side.ends[0] - middle).dot(side.normal) > 0.0;
     let is_one_side = sides.iter().all(|side| is_outward(side) == is_outward(&first));
     let sides: Vec<LegSide> = sides.iter().map(|side| leg_side(side, middle)).collect();
     let is_convex = sides.iter().all(|side| {
@@ -85,7 +85,7 @@ fn along(half_length: DVec3, wall: &FlatWall, walls: &[FlatWall]) -> Option<Plai
 }
 
 /// A side about the middle of the polygon.
-fn leg_side(side: &Side, middle: DVec2) -> LegSide {
+fn leg_side(side: &PrismSide, middle: DVec2) -> LegSide {
     let offset = (0.5 * (side.ends[0] + side.ends[1]) - middle).dot(side.normal);
     LegSide {
         normal: side.normal.normalize() * offset.signum(),

@@ -7,13 +7,15 @@
 mod polygon;
 mod reach;
 mod row;
+mod section;
 
 pub(in crate::scene) use crate::scene::plain_leg::polygon::{LegSide, MOST_SIDES};
 use crate::scene::plain_leg::reach::PathInLeg;
 pub use crate::scene::plain_leg::reach::RowReach;
+pub(in crate::scene) use crate::scene::plain_leg::row::ElementBand;
 use crate::scene::plain_leg::row::RowInLeg;
 pub(crate) use crate::scene::plain_leg::row::{AnglesOfRow, MetWall};
-pub(in crate::scene) use crate::scene::plain_leg::row::{ElementBand, LegSection};
+pub(in crate::scene) use crate::scene::plain_leg::section::LegSection;
 use crate::scene::{PrimId, Ray};
 use glam::DVec3;
 use lumiduct_base::math::Frame;

@@ -1,7 +1,6 @@
 //! Where a row of mirror bounces within a round or a rectangular wall ends.
 
 use crate::scene::PrimId;
-use crate::scene::plain_leg::polygon::{self, LegSide};
 use crate::scene::plain_leg::reach::{LEAST, PathInLeg, RowReach};
 use glam::{DVec2, DVec3};
 
@@ -12,17 +11,6 @@ const AT_EDGE: f64 = 1e-9;
 pub(super) const MOST_BOUNCES: u32 = 512;
 /// Share of the light below which it no longer matters which wall absorbs it, 1.
 const NOTHING_LEFT: f64 = 1e-20;
-
-/// The cross-section of a wall about the origin, and its pieces.
-#[derive(Debug, Clone)]
-pub(in crate::scene) enum LegSection {
-    /// A circle, and the parts of its wall where the elements of patterns are.
-    Round { radius: f64, wall: PrimId, elements: Box<[ElementBand]> },
-    /// A rectangle: half of its size, and its walls at -x, +x, -y and +y.
-    Rectangle { half: DVec2, walls: [PrimId; 4] },
-    /// Another convex polygon about the origin: the radius of a circle around it, and its sides.
-    Polygon { radius: f64, sides: Box<[LegSide]> },
-}
 
 /// A part of a round wall, along the axis and around it, that contains all elements of a pattern.
 #[derive(Debug, Clone, Copy)]
@@ -78,32 +66,12 @@ pub(super) struct RowInLeg {
     pub(super) end: PathInLeg,
 }
 
-impl LegSection {
-    /// The row of bounces within a reach; `share_of` gives the share of light that a wall mirrors, or `None` where no row may
-    /// meet it. `absorb` takes what each flat wall absorbs of the light at the start of the row, where nothing else absorbs.
-    #[inline]
-    pub(super) fn row(
-        &self,
-        reach: &RowReach,
-        share_of: impl FnMut(&MetWall) -> Option<f64>,
-        absorb: impl FnMut(PrimId, f64),
-    ) -> Option<RowInLeg> {
-        match self {
-            Self::Round { radius: _, wall: _, elements } => round(elements, reach, share_of),
-            Self::Rectangle { half, walls } => rectangle((*half, walls), reach, share_of, absorb),
-            Self::Polygon { radius, sides } => {
-                polygon::row((*radius, sides), reach, share_of, absorb)
-            }
-        }
-    }
-}
-
 /// Across the axis all chords of a mirrored path in a circle are equal. Every bounce rotates position and direction about the
 /// axis by the same angle δ and moves the position along it by the same length. With the position p, |p| = r, and the
 /// direction d across the axis, the chord is t = -2 p·d/d², and δ is the angle between p and p + t d: sin δ = t (p×d)/r²,
 /// cos δ = 1 + t (p·d)/r². After n bounces both are rotated by n δ.
 #[inline]
-fn round(
+pub(super) fn round(
     elements: &[ElementBand],
     reach: &RowReach,
     mut share_of: impl FnMut(&MetWall) -> Option<f64>,
@@ -163,7 +131,7 @@ fn clear_bounces(
 /// Between two parallel walls a path is mirrored to and fro, independently of its motion in the other two directions: it
 /// meets the two walls alternately, at equal distances along the path. Unfolded, the path is straight.
 #[inline]
-fn rectangle(
+pub(super) fn rectangle(
     (half, walls): (DVec2, &[PrimId; 4]),
     reach: &RowReach,
     mut share_of: impl FnMut(&MetWall) -> Option<f64>,

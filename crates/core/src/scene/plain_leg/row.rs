@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 const AT_EDGE: f64 = 1e-9;
 /// Most bounces of a row that are followed one by one, after which a path may end by roulette.
 pub(super) const MOST_BOUNCES: u32 = 512;
-/// Share of the light below which it no longer matters which wall absorbs it, 1.
+/// Share of the light below which the rest vanishes in the rounding of what the walls absorbed before, 1.
 const NOTHING_LEFT: f64 = 1e-20;
 
 /// A part of a round wall, along the axis and around it, that contains all elements of a pattern.

@@ -1,237 +1,24 @@
 //! Paths in rows and bounce by bounce end in the same places.
 
+mod scenes;
+
 use crate::optics::REFERENCE_WAVELENGTH;
-use crate::optics::{Finish, Medium};
 use crate::rng::{Dimension, Sampler};
-use crate::scene::pattern::{Columns, ElementField, ElementOutline, Pattern, RowPositions};
-use crate::scene::shape::{Cylinder, Flat, Region, Shape};
-use crate::scene::{
-    Builder, FaceId, FacePiece, FaceSpec, Inside, Owner, Ray, RowReach, Scene, Solid, SolidId,
-    StartSurfaces,
-};
+use crate::scene::{Inside, Ray, RowReach, Scene, SolidId, StartSurfaces};
 use crate::transport::walk::event::{Carries, Event, Observer};
 use crate::transport::walk::path::Path;
 use crate::transport::walk::walk;
-use glam::{DVec2, DVec3};
-use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk};
-use lumiduct_base::units::FluxUnit;
-use std::f64::consts::TAU;
+use glam::DVec3;
+use lumiduct_base::math::{cosine_hemisphere, disk};
+use scenes::{
+    RADIUS, bar, duct, duct_of_faces, frame, glass_prism, mirror_prism, mirror_prism_of_faces,
+    perforated, rod, tube,
+};
 use std::ops::ControlFlow;
 
-const RADIUS: f64 = 1.5;
-const LENGTH: f64 = 90.0;
 const PATHS: u64 = 500;
 const LIMIT: u32 = 4000;
 const MOST_FACES: usize = 8;
-
-fn frame() -> Frame {
-    Frame::from_axis(DVec3::new(0.3, -0.2, 0.5), DVec3::new(0.4, -0.3, 0.8))
-}
-
-fn builder(air: f64) -> Builder {
-    Builder::new(DVec3::ZERO, Medium::new("air", 1.0, air), FluxUnit::Lumen)
-}
-
-fn add(builder: &mut Builder, owner: Owner, finish: Option<Finish>, shape: Shape) {
-    let finish = finish.map(|finish| builder.add_finish("wall", finish));
-    builder.add_face(FaceSpec {
-        name: "pipe.wall".into(),
-        owner,
-        front: finish,
-        back: finish,
-        pieces: vec![FacePiece::whole(shape)],
-    });
-}
-
-fn wall() -> Shape {
-    Shape::Cylinder(Cylinder::new(frame(), RADIUS, LENGTH))
-}
-
-/// A disk across the axis.
-fn across(z: f64, radius: f64) -> Shape {
-    let frame = frame().shifted(z * frame().z);
-    Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: radius }))
-}
-
-/// A metal tube filled with absorbing air, with a small open plate across it.
-fn tube() -> Scene {
-    let mut builder = builder(0.002);
-    add(&mut builder, Owner::Sheet, Some(Finish::Metal { n: 1.2, k: 7.0 }), wall());
-    add(&mut builder, Owner::Sheet, Some(Finish::Open), across(0.4 * LENGTH, 0.3 * RADIUS));
-    builder.build()
-}
-
-/// The tube of a mirror with a row of open holes, and two columns of dots that are duller mirrors.
-fn perforated() -> Scene {
-    let mut builder = builder(0.0);
-    let mirror = |reflectance| Finish::Specular { reflectance, transmittance: 0.0 };
-    add(&mut builder, Owner::Sheet, Some(mirror(0.98)), wall());
-    let pattern = |name: &str, finish, columns, outline| Pattern {
-        name: name.into(),
-        face: FaceId::new(0),
-        field: ElementField {
-            rows: RowPositions::Even { first: 10.0, pitch: 3.0, count: 25 },
-            columns,
-            outline,
-            period: Some(TAU * RADIUS),
-        },
-        front: finish,
-        back: finish,
-        wall: None,
-    };
-    let one = |first| Columns { first, pitch: 1.0, count: 1, shift: 0.0 };
-    let open = builder.add_finish("open", Finish::Open);
-    let hole = ElementOutline::Rectangle { width: 1.0, length: 1.5 };
-    // It lies across the zero of the chart.
-    builder.add_pattern(pattern("holes", open, one(TAU * RADIUS - 0.2), hole));
-    let dull = builder.add_finish("dull", mirror(0.7));
-    let dot = ElementOutline::Rectangle { width: 0.5, length: 0.5 };
-    let two = Columns { pitch: 1.5, count: 2, ..one(4.0) };
-    builder.add_pattern(pattern("dots", dull, two, dot));
-    builder.build()
-}
-
-/// A rod in total reflection, in a wider tube.
-fn rod() -> Scene {
-    let mut builder = builder(0.0);
-    let mirror = Finish::Specular { reflectance: 0.9, transmittance: 0.0 };
-    let around = Shape::Cylinder(Cylinder::new(frame(), 2.0 * RADIUS, LENGTH));
-    add(&mut builder, Owner::Sheet, Some(mirror), around);
-    let medium = builder.add_medium(Medium::new("glass", 1.5, 0.003));
-    let (name, bounds) = ("pipe".into(), Aabb::EMPTY);
-    let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
-    let back = Frame { y: -frame().y, z: -frame().z, ..frame() };
-    let entry = Flat::new(back, Region::Annulus { inner: 0.0, outer: RADIUS });
-    for shape in [wall(), across(LENGTH, RADIUS), Shape::Flat(entry)] {
-        add(&mut builder, Owner::Solid(solid), None, shape);
-    }
-    builder.build()
-}
-
-/// Four walls of a rectangle about the axis, outward or inward, and its two ends.
-fn rectangle(half: [f64; 2], inward: bool) -> [Shape; 6] {
-    let f = frame();
-    let middle = f.origin + 0.5 * LENGTH * f.z;
-    let flat = |out: DVec3, along: DVec3, apart: f64, sides: [f64; 2]| {
-        let normal = if inward { -out } else { out };
-        let frame = Frame::from_axis_and_x(middle + apart * out, normal, along).unwrap();
-        let [half_x, half_y] = sides;
-        Shape::Flat(Flat::new(frame, Region::Rectangle { half_x, half_y }))
-    };
-    let [a, b] = half;
-    [
-        flat(f.x, f.z, a, [0.5 * LENGTH, b]),
-        flat(-f.x, f.z, a, [0.5 * LENGTH, b]),
-        flat(f.y, f.z, b, [0.5 * LENGTH, a]),
-        flat(-f.y, f.z, b, [0.5 * LENGTH, a]),
-        flat(f.z, f.x, 0.5 * LENGTH, half),
-        flat(-f.z, f.x, 0.5 * LENGTH, half),
-    ]
-}
-
-/// A rectangular duct of a mirror, of one face.
-fn duct() -> Scene {
-    let mut builder = builder(0.0);
-    let finish = builder.add_finish("wall", Finish::Metal { n: 1.2, k: 7.0 });
-    let [a, b, c, d, ..] = rectangle([1.5 * RADIUS, 1.1 * RADIUS], true);
-    builder.add_face(FaceSpec {
-        name: "duct.wall".into(),
-        owner: Owner::Sheet,
-        front: Some(finish),
-        back: Some(finish),
-        pieces: [a, b, c, d].map(FacePiece::whole).into(),
-    });
-    builder.build()
-}
-
-/// Such a duct whose walls are faces of their own, of mirrors that differ.
-fn duct_of_faces() -> Scene {
-    let mut builder = builder(0.0);
-    let walls = rectangle([1.5 * RADIUS, 1.1 * RADIUS], true).into_iter();
-    for (wall, reflectance) in walls.zip([0.9, 0.97, 1.0, 0.95]) {
-        let mirror = Finish::Specular { reflectance, transmittance: 0.0 };
-        add(&mut builder, Owner::Sheet, Some(mirror), wall);
-    }
-    builder.build()
-}
-
-/// A box of an absorbing medium.
-fn bar() -> Scene {
-    let mut builder = builder(0.0);
-    let medium = builder.add_medium(Medium::new("glass", 1.5, 0.003));
-    let (name, bounds) = ("bar".into(), Aabb::EMPTY);
-    let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
-    for shape in rectangle([1.3 * RADIUS, 1.1 * RADIUS], false) {
-        add(&mut builder, Owner::Solid(solid), None, shape);
-    }
-    builder.build()
-}
-
-/// Corners of a polygon that is not regular, mm.
-fn corners() -> [DVec2; 5] {
-    [[1.5, 0.2], [1.0, 1.6], [-0.9, 1.5], [-1.7, -0.1], [-0.2, -1.8]]
-        .map(|p| RADIUS * DVec2::from(p))
-}
-
-/// The walls of a prism over it.
-fn prism_walls() -> [Shape; 5] {
-    let (f, corners) = (frame(), corners());
-    std::array::from_fn(|side| {
-        let [a, b] = [corners[side], corners[(side + 1) % corners.len()]];
-        let out = f.to_world((-(b - a).perp()).extend(0.0).normalize());
-        let middle = f.point_to_world((0.5 * (a + b)).extend(0.5 * LENGTH));
-        let wall = Frame::from_axis_and_x(middle, out, f.z).unwrap();
-        let region = Region::Rectangle { half_x: 0.5 * LENGTH, half_y: 0.5 * a.distance(b) };
-        Shape::Flat(Flat::new(wall, region))
-    })
-}
-
-/// They as one face.
-fn add_prism(builder: &mut Builder, owner: Owner, finish: Option<Finish>) {
-    let finish = finish.map(|finish| builder.add_finish("wall", finish));
-    builder.add_face(FaceSpec {
-        name: "prism.wall".into(),
-        owner,
-        front: finish,
-        back: finish,
-        pieces: prism_walls().map(FacePiece::whole).into(),
-    });
-}
-
-/// A mirror tube over a polygon.
-fn mirror_prism() -> Scene {
-    let mut builder = builder(0.0);
-    let mirror = Finish::Specular { reflectance: 0.97, transmittance: 0.0 };
-    add_prism(&mut builder, Owner::Sheet, Some(mirror));
-    builder.build()
-}
-
-/// Such a tube whose walls are faces of their own, of mirrors that differ.
-fn mirror_prism_of_faces() -> Scene {
-    let mut builder = builder(0.0);
-    for (wall, reflectance) in prism_walls().into_iter().zip([0.9, 0.97, 1.0, 0.95, 0.99]) {
-        let mirror = Finish::Specular { reflectance, transmittance: 0.0 };
-        add(&mut builder, Owner::Sheet, Some(mirror), wall);
-    }
-    builder.build()
-}
-
-/// A rod over a polygon, of an absorbing medium.
-fn glass_prism() -> Scene {
-    let mut builder = builder(0.0);
-    let medium = builder.add_medium(Medium::new("glass", 1.5, 0.003));
-    let (name, bounds) = ("rod".into(), Aabb::EMPTY);
-    let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
-    add_prism(&mut builder, Owner::Solid(solid), None);
-    let (f, outline) = (frame(), corners().to_vec());
-    let mirrored = outline.iter().rev().map(|p| DVec2::new(p.x, -p.y)).collect();
-    let back = Frame { y: -f.y, z: -f.z, ..f };
-    for (end, outline) in [(f.shifted(LENGTH * f.z), outline), (back, mirrored)] {
-        let end = Shape::Flat(Flat::new(end, Region::polygon(outline)));
-        add(&mut builder, Owner::Solid(solid), None, end);
-    }
-    builder.build()
-}
 
 /// What becomes of a path.
 #[derive(Debug, Default)]

@@ -27,6 +27,7 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     expect_passages(job, &mut problems);
     expect_polarisation(job, &mut problems);
     expect_wavelengths(job, &mut problems);
+    expect_one_wavelength(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
     problems.finish(&job.places)
@@ -168,6 +169,22 @@ fn expect_wavelengths(job: &Job, problems: &mut Problems) {
             );
             let hint = "use `auto`, `forward`, `backward` or `mix`, or remove the spectra";
             problems.error(&key, message).hint(hint);
+        }
+    }
+}
+
+/// Refuses estimators that cannot follow light through fluorescent media.
+fn expect_one_wavelength(job: &Job, problems: &mut Problems) {
+    if !job.scene.fluoresces() {
+        return;
+    }
+    for (key, request) in requests(job) {
+        if is_asked(request, |asked| !asked.follows_fluorescence()) {
+            let message = format!(
+                "`{}` cannot compute light that changes its wavelength: its gather paths have one from the sensor to the source",
+                request.name()
+            );
+            problems.error(&key, message).hint("use `auto` or `forward`");
         }
     }
 }

@@ -27,6 +27,39 @@ fn estimators_with_records_and_comparisons_are_refused_where_light_has_a_spectru
 }
 
 #[test]
+fn only_photon_paths_compute_fluorescence_and_its_gain_is_remarked() {
+    let place = Place::new();
+    let scene = r#"
+lumiduct = 1
+title = "A dye"
+[media.dye]
+index = 1
+fluorescence = { absorption_per_mm = { by_nm = [[440, 1], [470, 0]] }, emission = { line_nm = 560 }, quantum_yield = 0.9 }
+[solids.ball.sphere]
+radius_mm = 10
+medium = "dye"
+[sources.lamp.disk]
+radius_mm = 1
+at = { position_mm = [0, 0, -20] }
+emission = "collimated"
+flux_w = 1
+spectrum = { line_nm = 440 }
+[sensors]
+out = { plane = {}, on = "ball.surface", counts = "leaving" }
+"#;
+    fs::write(place.path("dye.toml"), scene).unwrap();
+    for estimator in ["backward", "mix"] {
+        let said = place.bad(2, &format!("run dye.toml --estimator {estimator} -o out"));
+        assert!(said.contains("cannot compute light that changes its wavelength"), "{said}");
+    }
+    assert!(!place.names().contains(&"out".to_owned()));
+    place.good("run dye.toml --estimator auto --paths 20k -o out -q");
+    let report = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(report.contains("fluorescence emits light that the eye sees better"), "{report}");
+    assert!(report.contains("quantum yield 0.9"), "{report}");
+}
+
+#[test]
 fn the_colour_and_the_spectrum_are_reported_and_a_red_has_no_colour_temperature() {
     let place = lit_by("{ csv = \"red.csv\" }", "");
     fs::write(place.path("red.csv"), "nm,relative\n610,0\n630,1\n650,0\n").unwrap();

@@ -130,6 +130,7 @@ impl Observer for Splitter<'_, '_> {
             | Event::Travel(_)
             | Event::Jump(_)
             | Event::Collide(_)
+            | Event::Convert(_)
             | Event::Depart(..)
             | Event::Absorbed(_)
             | Event::Detect(_)

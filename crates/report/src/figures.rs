@@ -257,6 +257,9 @@ fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Ve
     for (medium, measure) in &balance.absorbed_medium {
         bar(format!("absorbed in {medium}"), measure, kind::MEDIUM);
     }
+    for (medium, measure) in &balance.converted {
+        bar(format!("lost by conversion in {medium}"), measure, kind::MEDIUM);
+    }
     bar("cut by the bounce limit".into(), &balance.cut, kind::LOST);
     bar("leaked".into(), &balance.leaked, kind::LOST);
     bar_chart(&BarChart {

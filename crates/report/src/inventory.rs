@@ -109,9 +109,19 @@ fn media(scene: &Scene) -> Listing {
         let scattering = medium.scattering().map_or(String::new(), |scattering| {
             format!("{} /mm, anisotropy {}", scattering.coefficient(), scattering.anisotropy())
         });
-        [medium.name().to_owned(), index(medium), absorption(medium), scattering]
+        let fluorescence = medium.fluorescence().map_or(String::new(), |fluorescence| {
+            let emission = fluorescence.emission().spectrum().mean_wavelength();
+            format!(
+                "absorbs {}, quantum yield {}, emits about {} nm",
+                absorption(fluorescence.absorption_law()),
+                fluorescence.quantum_yield(),
+                format_value(emission)
+            )
+        });
+        let absorption = absorption(medium.absorption_law());
+        [medium.name().to_owned(), index(medium), absorption, scattering, fluorescence]
     });
-    let head = ["medium", "index", "absorption", "scattering"];
+    let head = ["medium", "index", "absorption", "scattering", "fluorescence"];
     Listing::new("medium", head, scene.media.len(), rows)
 }
 
@@ -131,8 +141,7 @@ fn index(medium: &Medium) -> String {
 }
 
 /// The absorption coefficient of a medium in words.
-fn absorption(medium: &Medium) -> String {
-    let law = medium.absorption_law();
+fn absorption(law: &AbsorptionLaw) -> String {
     let at = |nm: f64| format_value(law.at(nm));
     match law {
         AbsorptionLaw::Constant(absorption) => format!("{absorption} /mm"),

@@ -78,11 +78,16 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
             SensorKind::Surface(_) | SensorKind::Goniometer(_) => String::new(),
         };
         let value = &measures.values[&format!("{name}.{what}")];
-        Some(format!(
-            "the {what} of sensor `{name}` is {}, above 1: light passes the sensor more than once and is \
-                counted each time{way_out}",
-            format_with_error(value.value, value.std_error)
-        ))
+        let cause = if scene.fluoresces() {
+            format!(
+                "fluorescence emits light that the eye sees better, and light that passes the sensor more than once is \
+                    counted each time; `{name}.radiant_flux` is in watts"
+            )
+        } else {
+            format!("light passes the sensor more than once and is counted each time{way_out}")
+        };
+        let value = format_with_error(value.value, value.std_error);
+        Some(format!("the {what} of sensor `{name}` is {value}, above 1: {cause}"))
     };
     scene.sensors.iter().filter_map(remark).collect()
 }

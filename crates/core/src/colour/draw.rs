@@ -8,7 +8,7 @@ use crate::colour::spectrum::Spectrum;
 const SHARES: [f64; 3] = [0.6, 0.3, 0.1];
 
 /// Draws wavelengths in proportion to a spectrum, more of them where they matter most to the eye.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SpectralDraw {
     spectrum: Spectrum,
     pieces: Vec<SpectralPiece>,
@@ -17,7 +17,7 @@ pub struct SpectralDraw {
 }
 
 /// A range of wavelengths over which the density is a multiple of the spectrum.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct SpectralPiece {
     /// Start and end, nm.
     range: [f64; 2],
@@ -80,6 +80,11 @@ impl SpectralDraw {
     pub fn relative_flux(&self, nm: f64) -> f64 {
         self.piece(nm)
             .map_or(0.0, |piece| luminous_efficiency(nm) / (self.luminous * piece.emphasis))
+    }
+
+    /// Radiant flux of a draw over the mean of all draws, 1; 0 at wavelengths that are never drawn.
+    pub fn relative_power(&self, nm: f64) -> f64 {
+        self.piece(nm).map_or(0.0, |piece| 1.0 / piece.emphasis)
     }
 
     /// Probability density of a wavelength, 1/nm.

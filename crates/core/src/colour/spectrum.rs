@@ -122,6 +122,17 @@ impl Spectrum {
         std::array::from_fn(|axis| self.integral(|nm| colour_matching(nm)[axis]))
     }
 
+    /// Mean wavelength of its radiant flux, nm.
+    pub fn mean_wavelength(&self) -> f64 {
+        let mean = |pair: &[[f64; 2]]| {
+            let [[low, at_low], [high, at_high]] = [pair[0], pair[1]];
+            let middle = (low + high) * (at_low + at_high);
+            (high - low) / 6.0 * (low * at_low + middle + high * at_high)
+        };
+        // Simpson's rule, exact for the product of two linear functions.
+        self.knots.windows(2).map(mean).sum()
+    }
+
     /// Share of its radiant flux from one wavelength to another, nm.
     pub fn share(&self, [from, to]: [f64; 2]) -> f64 {
         let pieces = self.pieces().filter_map(|[low, high]| {

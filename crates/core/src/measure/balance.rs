@@ -10,7 +10,7 @@ use crate::transport::Readings;
 use indexmap::IndexMap;
 use serde::Serialize;
 
-/// Where the light went, lm or W. The lines sum to the emitted flux.
+/// Where the light went, lm or W. The lines sum to the emitted flux, without heat.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Balance {
     /// Flux that started, all sources together.
@@ -21,6 +21,13 @@ pub struct Balance {
     pub absorbed: IndexMap<String, Measure>,
     /// Flux absorbed in each medium.
     pub absorbed_medium: IndexMap<String, Measure>,
+    /// Flux that fluorescence in each medium absorbed, less what it emitted, lm: negative where light that the eye sees better
+    /// was emitted. Only media that fluoresce.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub converted: IndexMap<String, Measure>,
+    /// Radiant flux that fluorescence turned to heat in each of these media, W; not a line of the balance of luminous flux.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub heat: IndexMap<String, Measure>,
     /// Flux that left the scene, by the face of a solid through which it was last transmitted.
     pub escaped: IndexMap<String, Measure>,
     /// Flux that left the scene without ever having left a solid.
@@ -48,7 +55,16 @@ pub(crate) fn balance(evidence: &Evidence<'_>) -> Balance {
         let faces = scene.faces.iter().enumerate().filter(|(_, face)| counts(face.owner));
         faces.map(|(index, face)| (face.name.clone(), line(slot(FaceId::new(index))))).collect()
     };
+    let converting = |measure: &dyn Fn(MediumId) -> Measure| {
+        let media = scene.media.iter().enumerate();
+        let media = media.filter(|(_, medium)| medium.fluorescence().is_some());
+        media
+            .map(|(index, medium)| (medium.name().to_owned(), measure(MediumId::new(index))))
+            .collect()
+    };
     Balance {
+        converted: converting(&|medium| line(layout.converted(medium))),
+        heat: converting(&|medium| evidence.sum(&[layout.heat(medium)], 1.0, "W")),
         emitted: evidence.entry(emitted),
         emitted_by_source: sources
             .clone()
@@ -90,6 +106,8 @@ impl Balance {
         }
         self.absorbed.iter().for_each(|(name, m)| add(format!("absorbed.{name}"), m));
         self.absorbed_medium.iter().for_each(|(name, m)| add(format!("absorbed_medium.{name}"), m));
+        self.converted.iter().for_each(|(name, m)| add(format!("converted.{name}"), m));
+        self.heat.iter().for_each(|(name, m)| add(format!("heat.{name}"), m));
         self.escaped.iter().for_each(|(name, m)| add(format!("escaped.{name}"), m));
         add("escaped_directly".into(), &self.escaped_directly);
         add("cut".into(), &self.cut);
@@ -119,6 +137,9 @@ fn spent(evidence: &Evidence<'_>) -> Vec<usize> {
     let faces = || (0..scene.faces.len()).map(FaceId::new);
     let mut slots: Vec<usize> = faces().map(|face| layout.absorbed_by_face(face)).collect();
     slots.extend((0..scene.media.len()).map(|m| layout.absorbed_in_medium(MediumId::new(m))));
+    if scene.fluoresces() {
+        slots.extend((0..scene.media.len()).map(|m| layout.converted(MediumId::new(m))));
+    }
     slots.extend(faces().map(|face| layout.escaped(Some(face))));
     slots.extend([layout.escaped(None), layout.cut(), layout.roulette(), layout.leaked()]);
     slots

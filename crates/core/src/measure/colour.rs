@@ -6,6 +6,7 @@ use crate::colour::{
 };
 use crate::measure::evidence::Evidence;
 use crate::measure::{Measure, Status};
+use crate::optics::{Fluorescence, Medium};
 use crate::scene::{SensorId, Source};
 use crate::transport::{BIN_WIDTH, FIRST_BIN, SPECTRUM_BINS, Stimulus};
 use indexmap::IndexMap;
@@ -86,7 +87,9 @@ pub(crate) fn spectrum(evidence: &Evidence<'_>, id: SensorId) -> Option<SensorSp
     let is_dark = |nm: f64| {
         let range = [nm - 0.5 * BIN_WIDTH, nm + 0.5 * BIN_WIDTH];
         let sources = evidence.scene.sources.iter().filter(|source| source.is_lit());
-        let mut spectra = sources.filter_map(|source| source.spectrum.as_ref());
+        let emitted = sources.filter_map(|source| source.spectrum.as_deref());
+        let converted = evidence.scene.media.iter().filter_map(Medium::fluorescence);
+        let mut spectra = emitted.chain(converted.map(Fluorescence::emission));
         spectra.all(|own| own.spectrum().share(range) == 0.0)
     };
     let band = |(bin, nm): (usize, &f64)| {

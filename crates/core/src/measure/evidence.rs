@@ -51,7 +51,7 @@ impl<'a> Evidence<'a> {
 
     /// Mean flux of one path, lm or W.
     pub(crate) fn path_flux(&self) -> f64 {
-        self.scene.source_flux() / self.paths as f64
+        self.scene.source_flux() * self.scene.luminous_gain() / self.paths as f64
     }
 
     /// A measure from these readings.

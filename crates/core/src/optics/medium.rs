@@ -1,7 +1,8 @@
-//! Media: refractive index, absorption and scattering.
+//! Media: refractive index, absorption, scattering and fluorescence.
 
-use crate::optics::VolumeScattering;
 use crate::optics::dispersion::{AbsorptionLaw, IndexLaw};
+use crate::optics::{Fluorescence, VolumeScattering};
+use std::sync::Arc;
 
 /// A homogeneous medium.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,6 +11,7 @@ pub struct Medium {
     index: IndexLaw,
     absorption: AbsorptionLaw,
     scattering: Option<VolumeScattering>,
+    fluorescence: Option<Arc<Fluorescence>>,
 }
 
 impl Medium {
@@ -21,12 +23,17 @@ impl Medium {
 
     /// A medium by its laws.
     pub fn dispersive(name: &str, index: IndexLaw, absorption: AbsorptionLaw) -> Self {
-        Self { name: name.to_owned(), index, absorption, scattering: None }
+        Self { name: name.to_owned(), index, absorption, scattering: None, fluorescence: None }
     }
 
     /// The same medium, turbid.
     pub fn with_scattering(self, scattering: VolumeScattering) -> Self {
         Self { scattering: Some(scattering), ..self }
+    }
+
+    /// The same medium with phosphors or dyes in it.
+    pub fn with_fluorescence(self, fluorescence: Fluorescence) -> Self {
+        Self { fluorescence: Some(Arc::new(fluorescence)), ..self }
     }
 
     /// Its name in the scene file.
@@ -62,7 +69,13 @@ impl Medium {
         self.scattering.as_ref()
     }
 
-    /// Share of the flux that survives `length` mm: Beer-Lambert, exp(-αl).
+    /// Fluorescence of the medium, if it has any.
+    #[inline]
+    pub fn fluorescence(&self) -> Option<&Fluorescence> {
+        self.fluorescence.as_deref()
+    }
+
+    /// Share of the flux that survives `length` mm without its fluorescence: Beer-Lambert, exp(-αl).
     #[inline]
     pub(crate) fn transmittance(&self, wavelength: f64, length: f64) -> f64 {
         let absorption = self.absorption(wavelength);

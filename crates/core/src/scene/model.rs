@@ -102,6 +102,24 @@ impl Scene {
         })
     }
 
+    /// Whether any medium fluoresces.
+    pub fn fluoresces(&self) -> bool {
+        self.media.iter().any(|medium| medium.fluorescence().is_some())
+    }
+
+    /// By how much fluorescence may multiply luminous flux, 1: the largest mean over the light of a source, at least 1.
+    pub(crate) fn luminous_gain(&self) -> f64 {
+        let spectra = || self.sources.iter().filter_map(|source| source.spectrum.as_deref());
+        let gains = self.media.iter().filter_map(Medium::fluorescence).flat_map(|own| {
+            let emitted = own.emission().spectrum();
+            spectra().map(|from| {
+                let from = from.spectrum();
+                own.power_yield(from.mean_wavelength()) * emitted.efficacy() / from.efficacy()
+            })
+        });
+        gains.fold(1.0, f64::max)
+    }
+
     /// Flux of all sources, lm or W.
     pub fn source_flux(&self) -> f64 {
         self.sources.iter().map(|source| source.flux).sum()

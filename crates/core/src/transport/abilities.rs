@@ -32,10 +32,22 @@ impl Estimator {
         !self.has_records()
     }
 
+    /// Whether it can follow light that changes its wavelength in a fluorescent medium. Gather paths have one wavelength from
+    /// the sensor to the source.
+    pub fn follows_fluorescence(self) -> bool {
+        match self {
+            Self::Forward => true,
+            Self::Backward | Self::Mix | Self::Gather | Self::Mis => false,
+        }
+    }
+
     /// Whether a trial in a scene could find more than photons alone do.
     pub(crate) fn is_worth_a_trial(self, scene: &Scene) -> bool {
         let can_meet = |source: &Source| invisible(source, scene).is_none();
         if !scene.polarisation.is_ignored() && !self.follows_polarisation() {
+            return false;
+        }
+        if scene.fluoresces() && !self.follows_fluorescence() {
             return false;
         }
         match self {

@@ -45,7 +45,7 @@ pub use tally::{Cells, Counts, Layout};
 pub(crate) use tally::{Loss, TAILS};
 pub use trial::{Objection, Trial};
 pub use walk::emitters::invisible;
-pub use walk::{Carries, Collision, Departure, Detection, Jump, Segment};
+pub use walk::{Carries, Collision, Conversion, Departure, Detection, Jump, Segment};
 pub use walk::{
     Emergence, Event, MetEmission, Observer, Path, ROULETTE_BELOW, Stepping, Unobserved, Vertex,
     walk,

@@ -27,11 +27,19 @@ impl Context<'_> {
                 index.unwrap_or(IndexLaw::Constant(1.0)),
                 absorption.unwrap_or(AbsorptionLaw::Constant(0.0)),
             );
-            let made = match medium.scattering {
+            let turbid = match medium.scattering {
                 Some(ScatteringSpec { per_mm, anisotropy }) => {
                     clear.with_scattering(VolumeScattering::new(per_mm, anisotropy))
                 }
                 None => clear,
+            };
+            let fluorescence = medium
+                .fluorescence
+                .as_ref()
+                .and_then(|spec| self.lower_fluorescence(spec, &key.field("fluorescence")));
+            let made = match fluorescence {
+                Some(fluorescence) => turbid.with_fluorescence(fluorescence),
+                None => turbid,
             };
             self.media.insert(name.clone(), self.builder.add_medium(made));
         }
@@ -46,9 +54,14 @@ impl Context<'_> {
         if let Some(surroundings) = self.medium(name, &key) {
             self.builder.set_surroundings(surroundings);
         }
-        if spec.media.get(name).is_some_and(|medium| medium.scattering.is_some()) {
+        let Some(surroundings) = spec.media.get(name) else { return };
+        let endless = [
+            (surroundings.scattering.is_some(), "scatters"),
+            (surroundings.fluorescence.is_some(), "fluoresces"),
+        ];
+        for (_, verb) in endless.into_iter().filter(|(is_so, _)| *is_so) {
             self.problems
-                .error(&key, format!("`{name}` scatters: light would never leave the scene"))
+                .error(&key, format!("`{name}` {verb}: light would never leave the scene"))
                 .hint("put a solid of this medium around the scene");
         }
     }

@@ -14,6 +14,7 @@ mod daylight;
 mod emissions;
 mod emitters;
 mod finishes;
+mod fluorescence;
 mod flux;
 mod haze;
 mod laws;

@@ -12,7 +12,7 @@ use lumiduct_core::colour::{
     DaylightPhase, NoSpectrum, PhosphorWhite, SpectralDraw, SpectralTable, Spectrum, blackbody,
     equal_energy, gaussian, illuminant_a, illuminant_d65,
 };
-use lumiduct_core::optics::{AbsorptionLaw, REFERENCE_WAVELENGTH};
+use lumiduct_core::optics::{AbsorptionLaw, Medium, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::Scene;
 use lumiduct_files::spectral::SpectralColumn;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ impl Context<'_> {
         }
     }
 
-    fn spectrum(&mut self, spec: &SpectrumSpec, key: &Key) -> Option<Spectrum> {
+    pub(super) fn spectrum(&mut self, spec: &SpectrumSpec, key: &Key) -> Option<Spectrum> {
         let (made, key) = match spec {
             SpectrumSpec::CieA => (Spectrum::of_law(illuminant_a), key.clone()),
             SpectrumSpec::CieD65 => (Spectrum::of_law(illuminant_d65), key.clone()),
@@ -177,10 +177,12 @@ pub(super) fn note_tables(
     }
 }
 
-/// The spectra of the sources that shine.
+/// The spectra of the sources that shine, and of fluorescence.
 fn lit_spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
     let lit = scene.sources.iter().filter(|source| source.is_lit());
-    lit.filter_map(|source| Some(source.spectrum.as_ref()?.spectrum()))
+    let emitted = lit.filter_map(|source| Some(source.spectrum.as_ref()?.spectrum()));
+    let converted = scene.media.iter().filter_map(Medium::fluorescence);
+    emitted.chain(converted.map(|own| own.emission().spectrum()))
 }
 
 /// Notes finishes whose tables end within the light that meets them.

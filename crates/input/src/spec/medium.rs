@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::spec::spectrum::{AbsorptionSpec, IndexSpec};
+use crate::spec::spectrum::{AbsorptionSpec, IndexSpec, SpectrumSpec};
 
 /// A medium in which light travels. `air` is predefined with index 1 and no absorption, and so are the media that `lumiduct library` lists, without
 /// absorption except `pure_water`; a table of the same name replaces them. What an interface of two media
@@ -18,6 +18,8 @@ pub struct MediumSpec {
     pub absorption_per_mm: AbsorptionSpec,
     /// Particles that scatter light, evenly spread, as in diffuser rods; none in a clear medium.
     pub scattering: Option<ScatteringSpec>,
+    /// Phosphors or dyes that absorb light and emit it at other wavelengths; sources need a `spectrum`.
+    pub fluorescence: Option<FluorescenceSpec>,
 }
 
 /// Scattering within a medium.
@@ -31,4 +33,17 @@ pub struct ScatteringSpec {
     #[serde(default)]
     #[schemars(range(min = -0.999, max = 0.999))]
     pub anisotropy: f64,
+}
+
+/// Fluorescence of a medium, evenly spread. What is absorbed is emitted in all directions alike, unpolarised. Computed by `forward`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FluorescenceSpec {
+    /// Absorption coefficient (natural) of the phosphor or dye, beside that of the medium itself: a table that ends in 0 where
+    /// light is no longer absorbed, toward long wavelengths.
+    pub absorption_per_mm: AbsorptionSpec,
+    /// Spectrum of what it emits.
+    pub emission: SpectrumSpec,
+    /// Quantum yield: photons of the emission for each photon absorbed. The rest, and the difference in energy of the photons, becomes heat.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub quantum_yield: f64,
 }

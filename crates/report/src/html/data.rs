@@ -173,7 +173,7 @@ pub(crate) fn flow(balance: &Balance, whole: f64, unit: &str) -> Value {
             [(measure.value, DIGITS), (measure.std_error, ERROR_DIGITS)].map(|(x, n)| number(x, n));
         json!({ "name": name, "kind": kind, "value": value, "error": error })
     };
-    let sources: Vec<Value> = balance
+    let mut sources: Vec<Value> = balance
         .emitted_by_source
         .iter()
         .map(|(name, measure)| line(name.clone(), "source", measure))
@@ -187,6 +187,15 @@ pub(crate) fn flow(balance: &Balance, whole: f64, unit: &str) -> Value {
     sinks.push(line("escaped, never in a solid".into(), "escaped", &balance.escaped_directly));
     sinks.extend(lines(&balance.absorbed, "absorbed by", "absorbed"));
     sinks.extend(lines(&balance.absorbed_medium, "absorbed in", "medium"));
+    for (medium, measure) in &balance.converted {
+        // Light that the eye sees better is a gain.
+        let gain = Measure { value: -measure.value, ..measure.clone() };
+        if gain.value > 0.0 {
+            sources.push(line(format!("gained by conversion in {medium}"), "source", &gain));
+        } else if measure.value > 0.0 {
+            sinks.push(line(format!("lost by conversion in {medium}"), "medium", measure));
+        }
+    }
     sinks.push(line("cut by the bounce limit".into(), "lost", &balance.cut));
     sinks.push(line("leaked".into(), "lost", &balance.leaked));
     json!({ "plot": "flow", "unit": unit, "whole": whole, "sources": sources, "sinks": sinks })

@@ -75,6 +75,7 @@ impl Observer for GatherPathCounter<'_, '_> {
             Event::Start(_)
             | Event::Travel(_)
             | Event::Jump(_)
+            | Event::Convert(_)
             | Event::Absorbed(_)
             | Event::Detect(_)
             | Event::Roulette(_)

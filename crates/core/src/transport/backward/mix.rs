@@ -188,6 +188,7 @@ impl Observer for Mixing<'_, '_> {
             Event::Detect(light) => self.detect(path, light),
             Event::Travel(_)
             | Event::Jump(_)
+            | Event::Convert(_)
             | Event::Arrive(_)
             | Event::Absorbed(_)
             | Event::Meet(_)

@@ -10,7 +10,7 @@ use crate::transport::stop::Pace;
 use crate::transport::tally::controls::Blocks;
 use crate::transport::tally::sensor_reading::{ClassStep, DetectedLight, Trail};
 use crate::transport::{
-    Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
+    Conversion, Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
 };
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -261,6 +261,10 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Collide(_) => return self.observer.see(path, event),
+            Event::Convert(&Conversion { medium, absorbed, emitted, heat, .. }) => {
+                self.add(layout.converted(medium), absorbed - emitted);
+                self.add(layout.heat(medium), heat);
+            }
             Event::Jump(jump) => {
                 self.readings.segments += 1;
                 self.add(layout.absorbed_in_medium(jump.medium), jump.absorbed_in_medium);

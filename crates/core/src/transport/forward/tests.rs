@@ -171,6 +171,7 @@ impl Observer for Onlooker {
             Event::Detect(light) => self.detected += light.cells.len(),
             Event::Travel(_)
             | Event::Jump(_)
+            | Event::Convert(_)
             | Event::Collide(_)
             | Event::Absorbed(_)
             | Event::Meet(_)

@@ -58,6 +58,7 @@ fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
     let mut see = |path: &Path, event: &Event<'_>| match event {
         Event::Arrive(vertex) => points.push(vertex.point),
         Event::Collide(collision) => points.push(collision.point),
+        Event::Convert(conversion) => points.push(conversion.point),
         Event::Absorbed(vertex) => end = TrackEnd::Absorbed(vertex.interface.acting.face),
         Event::Escaped(_) => {
             // Out of the scene, with a stub that shows its direction.

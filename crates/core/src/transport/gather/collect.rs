@@ -86,6 +86,7 @@ impl Observer for Collecting<'_, '_> {
             | Event::Start(_)
             | Event::Travel(_)
             | Event::Jump(_)
+            | Event::Convert(_)
             | Event::Absorbed(_)
             | Event::Detect(_)
             | Event::Roulette(_)

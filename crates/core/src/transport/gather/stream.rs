@@ -117,6 +117,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
             }
             Event::Travel(_)
             | Event::Jump(_)
+            | Event::Convert(_)
             | Event::Arrive(_)
             | Event::Collide(_)
             | Event::Depart(..)

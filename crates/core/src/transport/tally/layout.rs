@@ -27,6 +27,8 @@ pub struct Layout {
     sources: usize,
     faces: usize,
     media: usize,
+    /// Media with lines for their fluorescence: all, or none if none has any.
+    converting: usize,
     sensors: usize,
     /// Stimuli, and bins of the spectrum, of each sensor: none without spectra.
     colours: usize,
@@ -39,6 +41,7 @@ impl Layout {
             sources: scene.sources.len(),
             faces: scene.faces.len(),
             media: scene.media.len(),
+            converting: if scene.fluoresces() { scene.media.len() } else { 0 },
             sensors: scene.sensors.len(),
             colours: if scene.is_spectral() { Stimulus::ALL.len() + SPECTRUM_BINS } else { 0 },
         }
@@ -112,6 +115,17 @@ impl Layout {
         self.cut() + 2
     }
 
+    /// Flux that fluorescence in a medium absorbed, less what it emitted, which may be more lumens; only in scenes with it.
+    pub(crate) fn converted(&self, medium: MediumId) -> usize {
+        debug_assert!(medium.index() < self.converting, "a medium fluoresces");
+        self.leaked() + 1 + medium.index()
+    }
+
+    /// Radiant flux that fluorescence in a medium turned to heat, W; only in scenes with it.
+    pub(crate) fn heat(&self, medium: MediumId) -> usize {
+        self.converted(medium) + self.converting
+    }
+
     /// Flux on a sensor, by source.
     #[inline]
     pub fn sensor_flux(&self, sensor: SensorId, source: SourceId) -> usize {
@@ -179,6 +193,9 @@ impl Layout {
     }
 
     fn sensor_base(&self, sensor: usize) -> usize {
-        self.leaked() + 1 + sensor * (2 * self.sources + 3 + TAILS.len() + 2 + self.colours)
+        self.leaked()
+            + 1
+            + 2 * self.converting
+            + sensor * (2 * self.sources + 3 + TAILS.len() + 2 + self.colours)
     }
 }

@@ -4,16 +4,17 @@
 //! This module does not know what is counted. Photon paths and gather paths use the same loop: the observer of photon
 //! paths counts flux on sensors, that of gather paths finds their ends and the sources that they meet.
 
-use crate::optics::{Lobe, Scattered, Side, Stokes, VolumeScattering};
+use crate::optics::{Fluorescence, Lobe, Scattered, Side, Stokes, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::{Hits, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::walk::event::{
-    Carries, Collision, Departure, Event, Observer, Segment, Vertex,
+    Carries, Collision, Conversion, Departure, Event, Observer, Segment, Vertex,
 };
 use crate::transport::walk::jump::jump;
 use crate::transport::walk::path::Path;
 use crate::transport::walk::scatter::{scatter_photon, send_gather_path};
 use glam::DVec3;
+use lumiduct_base::math::uniform_sphere;
 use std::ops::ControlFlow;
 
 /// Throughput below which roulette ends paths after a row of bounces, 1. A row ends with its leg, or where single bounces
@@ -35,12 +36,18 @@ pub fn walk<V: Observer>(
         let hits = scene.find_next(&ray, &path.on, &path.inside);
         let medium = &scene.media[path.medium.index()];
         let mut length = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
-        let mut scattered = None;
+        let mut within = None;
         // Clear media draw nothing; a path that meets no surface has left all bodies, or leaks.
         if let (Some(scattering), Some(_)) = (medium.scattering(), &hits) {
             let free = scattering.free_path(sampler.one(Dimension::FreePath));
             if free < length {
-                (length, scattered) = (free, Some(scattering));
+                (length, within) = (free, Some(Within::Scatters(scattering)));
+            }
+        }
+        if let (Some(fluorescence), Some(_)) = (medium.fluorescence(), &hits) {
+            let free = fluorescence.free_path(path.wavelength, || sampler.one(Dimension::FreePath));
+            if free < length {
+                (length, within) = (free, Some(Within::Converts(fluorescence)));
             }
         }
         let arriving = path.throughput * medium.transmittance(path.wavelength, length);
@@ -60,9 +67,14 @@ pub fn walk<V: Observer>(
             return;
         };
         let depth = path.depth;
-        let next = match scattered {
+        let next = match within {
             None => bounce(scene, &mut path, (&ray, hits), bounce_limit, sampler, observer),
-            Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, observer),
+            Some(Within::Scatters(scattering)) => {
+                collide(scattering, &mut path, ray.at(length), sampler, observer)
+            }
+            Some(Within::Converts(fluorescence)) => {
+                convert(fluorescence, &mut path, ray.at(length), sampler, observer)
+            }
         };
         match next {
             ControlFlow::Continue(next) => ray = next,
@@ -79,6 +91,12 @@ pub fn walk<V: Observer>(
             return;
         }
     }
+}
+
+/// What happens to a path within a medium, before it meets an interface.
+enum Within<'a> {
+    Scatters(&'a VolumeScattering),
+    Converts(&'a Fluorescence),
 }
 
 /// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The observer
@@ -176,6 +194,29 @@ fn collide<V: Observer>(
     path.stokes = path.stokes.map(|_| Stokes::UNPOLARISED);
     path.on = StartSurfaces::default();
     path.ray = next;
+    ControlFlow::Continue(path.ray)
+}
+
+/// Has a path absorbed and emitted by its medium: the ray on which it continues.
+#[inline(never)]
+fn convert<V: Observer>(
+    fluorescence: &Fluorescence,
+    path: &mut Path,
+    point: DVec3,
+    sampler: &mut Sampler<impl Numbers>,
+    observer: &mut V,
+) -> ControlFlow<(), Ray> {
+    let out = fluorescence.emit(path.wavelength, sampler.one(Dimension::Wavelength));
+    let (medium, absorbed) = (path.medium, path.throughput);
+    let (emitted, heat) = (absorbed * out.factor, absorbed * out.heat);
+    let conversion = Conversion { point, medium, absorbed, emitted, heat };
+    observer.see(path, Event::Convert(&conversion))?;
+    path.depth += 1;
+    path.wavelength = out.wavelength;
+    path.throughput = emitted;
+    path.stokes = path.stokes.map(|_| Stokes::UNPOLARISED);
+    path.on = StartSurfaces::default();
+    path.ray = Ray::new(point, uniform_sphere(sampler.pair(Dimension::Scatter)));
     ControlFlow::Continue(path.ray)
 }
 

@@ -63,6 +63,21 @@ pub struct Collision<'a> {
     pub throughput: f64,
 }
 
+/// Light of a photon path that a fluorescent medium absorbs and emits at another wavelength.
+#[derive(Debug, Clone, Copy)]
+pub struct Conversion {
+    /// Position, mm.
+    pub point: DVec3,
+    /// The medium.
+    pub medium: MediumId,
+    /// Throughput before it.
+    pub absorbed: f64,
+    /// Throughput after it: luminous flux, of which there may be more.
+    pub emitted: f64,
+    /// Radiant flux that becomes heat, over luminous flux at throughput 1, W/lm.
+    pub heat: f64,
+}
+
 /// Continuation of a path from a vertex.
 #[derive(Debug)]
 pub struct Departure {
@@ -154,6 +169,8 @@ pub enum Event<'a> {
     Travel(&'a Segment<'a>),
     /// It is about to be scattered within a medium, which absorbs nothing in doing so.
     Collide(&'a Collision<'a>),
+    /// Fluorescence within a medium is about to change its wavelength, direction and throughput.
+    Convert(&'a Conversion),
     /// It met an interface, which has not acted yet.
     Arrive(&'a Vertex<'a>),
     /// The interface sent it on; the acting face absorbed the loss of throughput.

@@ -293,7 +293,9 @@ impl<O: Observer> Observer for Follower<'_, '_, '_, O> {
                 ControlFlow::Break(())
             }
             Event::Depart(..) | Event::Cut(_) | Event::Leaked(..) => self.observer.see(path, event),
-            Event::Start(_)
+            // Only photon paths are followed where media fluoresce.
+            Event::Convert(_)
+            | Event::Start(_)
             | Event::Detect(_)
             | Event::Meet(_)
             | Event::Absorbed(_)

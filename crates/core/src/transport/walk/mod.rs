@@ -9,7 +9,7 @@ pub(crate) mod path;
 pub mod scatter;
 
 pub use bounce::walk;
-pub use event::{Carries, Collision, Departure, Detection, Jump, Segment};
+pub use event::{Carries, Collision, Conversion, Departure, Detection, Jump, Segment};
 pub use event::{Emergence, Event, MetEmission, Observer, ROULETTE_BELOW};
 pub use event::{Stepping, Unobserved, Vertex};
 pub use path::Path;

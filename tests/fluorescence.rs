@@ -1,0 +1,112 @@
+//! Light that a fluorescent medium absorbs and emits at other wavelengths, against laws.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+
+mod traced;
+
+use lumiduct_core::measure::Measures;
+use lumiduct_core::plan::Request;
+use lumiduct_input::Settings;
+
+/// Quantum yield, and absorption of blue light over the radius of the ball, 1.
+const YIELD: f64 = 0.8;
+const OPTICAL_RADIUS: f64 = 1.2;
+/// A photon of 600 nm has three quarters of the energy of one of 450 nm.
+const ENERGY: f64 = 450.0 / 600.0;
+
+/// A lamp of 2 W at 450 nm in the middle of a ball that absorbs only blue light and emits 600 nm.
+const BALL: &str = r#"
+[media.dye]
+index = 1
+[media.dye.fluorescence]
+absorption_per_mm = { by_nm = [[440, 0.12], [460, 0.12], [470, 0]] }
+emission = { line_nm = 600 }
+quantum_yield = 0.8
+[solids.ball.sphere]
+radius_mm = 10
+medium = "dye"
+[sources.lamp.point]
+flux_w = 2
+spectrum = { line_nm = 450 }
+[sensors]
+out = { plane = {}, on = "ball.surface", counts = "leaving" }
+far = { goniometer = { c_step_deg = 90, gamma_step_deg = 45 } }
+"#;
+
+fn measures(text: &str, paths: u64) -> Measures {
+    let settings = Settings {
+        paths: Some(paths),
+        estimator: Some(Request::Forward),
+        seed: Some(7),
+        ..Settings::default()
+    };
+    traced::measures(&traced::load(text, &settings))
+}
+
+fn assert_is(found: &Measures, name: &str, expected: f64) {
+    let measure = &found.values[name];
+    let off = (measure.value - expected).abs();
+    assert!(off <= 4.0 * measure.std_error + 1e-9 * expected, "{name}: {measure}, {expected}");
+    assert!(measure.std_error < 0.01 * expected, "{name}: {measure}");
+}
+
+#[test]
+fn light_of_a_ball_follows_from_photons_that_its_dye_absorbs() {
+    let found = measures(BALL, 200_000);
+    let absorbed = 2.0 * (1.0 - (-OPTICAL_RADIUS).exp());
+    let emitted = absorbed * YIELD * ENERGY;
+    assert_is(&found, "out.radiant_flux", 2.0 - absorbed + emitted);
+    assert_is(&found, "balance.heat.dye", absorbed - emitted);
+    assert_is(&found, "far.radiant_flux", 2.0 - absorbed + emitted);
+    // CIE 1931: V(450 nm) = 0.038, V(600 nm) = 0.631; 683.002 lm/W (CIE 018:2019).
+    let lumens = |watts: f64, v: f64| 683.002 * watts * v;
+    let flux = lumens(2.0 - absorbed, 0.038) + lumens(emitted, 0.631);
+    assert_is(&found, "out.flux", flux);
+    assert_is(&found, "balance.escaped.ball.surface", flux);
+    let gained = lumens(emitted, 0.631) - lumens(absorbed, 0.038);
+    let converted = &found.values["balance.converted.dye"];
+    assert!((converted.value + gained).abs() <= 4.0 * converted.std_error, "{converted} {gained}");
+    let residual = found.values["balance.residual"].value;
+    assert!(residual.abs() < 1e-9 * flux, "{residual}");
+}
+
+/// Share of the light emitted in all directions at a distance from the middle of a ball that leaves it, both in mm, where light
+/// is absorbed by the coefficient, 1/mm: the mean of `exp(-s/L)` over directions.
+fn escaping(from: f64, radius: f64, absorption: f64) -> f64 {
+    const DIRECTIONS: u32 = 400;
+    let way_out = |step: u32| {
+        let cos = 2.0 * (f64::from(step) + 0.5) / f64::from(DIRECTIONS) - 1.0;
+        (radius * radius - from * from * (1.0 - cos * cos)).sqrt() - from * cos
+    };
+    let sum: f64 = (0..DIRECTIONS).map(|step| (-absorption * way_out(step)).exp()).sum();
+    sum / f64::from(DIRECTIONS)
+}
+
+#[test]
+fn light_is_emitted_where_it_was_absorbed() {
+    const STEPS: u32 = 400;
+    let absorbing =
+        "index = 1\nabsorption_per_mm = { by_nm = [[440, 0], [590, 0], [600, 0.15], [610, 0]] }";
+    let found = measures(&BALL.replace("index = 1", absorbing), 200_000);
+    let (radius, dye) = (10.0, 0.1 * OPTICAL_RADIUS);
+    let leaving = |step: u32| {
+        let from = radius * (f64::from(step) + 0.5) / f64::from(STEPS);
+        dye * (-dye * from).exp() * escaping(from, radius, 0.15)
+    };
+    let converted: f64 = (0..STEPS).map(leaving).sum::<f64>() * radius / f64::from(STEPS);
+    let expected = 2.0 * ((-OPTICAL_RADIUS).exp() + YIELD * ENERGY * converted);
+    assert_is(&found, "out.radiant_flux", expected);
+}
+
+#[test]
+fn all_power_in_a_closed_mirror_becomes_heat_if_the_dye_absorbs_its_own_light() {
+    let text = BALL
+        .replace("[[440, 0.12], [460, 0.12], [470, 0]]", "[[440, 0.3], [610, 0.1], [620, 0]]")
+        .replace("medium = \"dye\"", "medium = \"dye\"\nfaces = { surface = \"mirror\" }")
+        .replace("quantum_yield = 0.8", "quantum_yield = 0.5");
+    let found = measures(
+        &format!("[finishes]\nmirror = {{ specular = {{ reflectance = 1 }} }}\n{text}"),
+        50_000,
+    );
+    assert_is(&found, "balance.heat.dye", 2.0);
+}

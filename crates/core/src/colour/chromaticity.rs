@@ -1,6 +1,6 @@
-//! The chromaticity of light: its colour without its amount, for the CIE 1931 observer (CIE 015:2018).
+//! The chromaticity of light: its colour without its amount (CIE 015:2018).
 
-/// The CIE 1931 chromaticity coordinates of light, 1.
+/// The chromaticity coordinates of light for a standard observer, CIE 1931 unless something else is said, 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chromaticity {
     /// x = X / (X + Y + Z).

@@ -16,7 +16,7 @@ pub use chromaticity::Chromaticity;
 pub use dominant::{DominantWavelength, WavelengthKind, dominant_wavelength};
 pub use draw::SpectralDraw;
 pub use observer::{MAX_EFFICACY, VISIBLE};
-pub(crate) use observer::{colour_matching, luminous_efficiency};
+pub(crate) use observer::{colour_matching, colour_matching_10_deg, luminous_efficiency};
 pub use phosphor::PhosphorWhite;
 pub use rendering::{ColourRendering, colour_rendering};
 pub use spectrum::{NoSpectrum, Spectrum};

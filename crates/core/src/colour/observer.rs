@@ -1,4 +1,4 @@
-//! The CIE 1931 standard colorimetric observer, for fields up to 4 degrees wide.
+//! The standard colorimetric observers: CIE 1931 for fields up to 4 degrees wide, CIE 1964 for wider ones.
 
 use std::sync::LazyLock;
 
@@ -8,17 +8,25 @@ pub const VISIBLE: [f64; 2] = [377.5, 782.5];
 /// Luminous flux per radiant flux where V(λ) is 1, lm/W. V is exactly 1 at 555 nm and 683 lm/W hold at 540 THz, 555.016 nm
 /// (CIE 018:2019, section 4).
 pub const MAX_EFFICACY: f64 = 683.002;
-/// The first wavelength of the table, nm.
+/// The first wavelength of the tables, nm.
 const FIRST: f64 = 360.0;
 
 /// Every nm from 360 to 830 nm, x, y and z.
 static TABLE: LazyLock<Vec<[f64; 3]>> =
     LazyLock::new(|| columns(include_str!("../../data/observer.csv")));
+/// Likewise, of the observer for wide fields.
+static TABLE_10_DEG: LazyLock<Vec<[f64; 3]>> =
+    LazyLock::new(|| columns(include_str!("../../data/observer_10deg.csv")));
 
 /// The colour-matching functions x, y, z of the CIE 1931 observer at a wavelength in nm, 1; 0 beyond 360 to 830 nm (ISO/CIE
 /// 11664-1:2019). The second is V(λ).
 pub(crate) fn colour_matching(nm: f64) -> [f64; 3] {
     std::array::from_fn(|column| linear(&TABLE, [FIRST, 1.0], nm, |row| row[column]))
+}
+
+/// The colour-matching functions of the CIE 1964 observer, for fields of 10 degrees, likewise (ISO/CIE 11664-1:2019).
+pub(crate) fn colour_matching_10_deg(nm: f64) -> [f64; 3] {
+    std::array::from_fn(|column| linear(&TABLE_10_DEG, [FIRST, 1.0], nm, |row| row[column]))
 }
 
 /// The luminous efficiency V(λ) of photopic vision, 1.
@@ -55,6 +63,7 @@ pub(super) fn columns<const N: usize>(text: &str) -> Vec<[f64; N]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colour::{Chromaticity, illuminant_a, illuminant_d65};
 
     #[test]
     fn a_watt_has_the_lumens_of_its_wavelength() {
@@ -64,6 +73,23 @@ mod tests {
         }
         assert_eq!(luminous_efficiency(359.0), 0.0);
         assert_eq!(luminous_efficiency(f64::NAN), 0.0);
+    }
+
+    #[test]
+    fn white_points_in_a_wide_field_are_those_of_the_cie() {
+        // CIE 015:2018: x10 and y10 of the standard illuminants.
+        type Law = fn(f64) -> f64;
+        let illuminants: [(Law, [f64; 2]); 2] =
+            [(illuminant_a, [0.45117, 0.40594]), (illuminant_d65, [0.31381, 0.33098])];
+        for (law, [x, y]) in illuminants {
+            let mut sums = [0.0; 3];
+            for nm in 377..=782 {
+                let own = colour_matching_10_deg(f64::from(nm));
+                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own * law(f64::from(nm)));
+            }
+            let white = Chromaticity::from_tristimulus(sums).unwrap();
+            assert!((white.x - x).abs() < 5e-5 && (white.y - y).abs() < 5e-5, "{white:?}");
+        }
     }
 
     #[test]

@@ -42,7 +42,7 @@ impl CellStimuli {
     /// Counts a luminous flux of a wavelength, nm, in a cell.
     #[inline]
     pub(crate) fn add(&mut self, cell: usize, flux: f64, nm: f64) {
-        let [x, z, _] = Stimuli::of(flux, nm).values;
+        let [x, z, ..] = Stimuli::of(flux, nm).values;
         let StimulusSums(values, _) = self.get_mut(cell);
         values.iter_mut().zip([x, flux, z]).for_each(|(own, more)| *own += more);
     }

@@ -1,6 +1,6 @@
 //! Colour of the light on a sensor, counted beside its flux.
 
-use crate::colour::{MAX_EFFICACY, VISIBLE, colour_matching};
+use crate::colour::{MAX_EFFICACY, VISIBLE, colour_matching, colour_matching_10_deg};
 
 /// Width of a bin of the spectrum, nm.
 pub(crate) const BIN_WIDTH: f64 = 5.0;
@@ -18,28 +18,25 @@ pub(crate) enum Stimulus {
     Z,
     /// Radiant flux, W.
     Radiant,
+    /// Tristimulus value X of the CIE 1964 observer, in units in which equal energy has Y in lm.
+    X10,
+    /// Tristimulus value Y, likewise.
+    Y10,
+    /// Tristimulus value Z, likewise.
+    Z10,
 }
 
 impl Stimulus {
     /// All of them, in the order of the scalars.
-    pub(crate) const ALL: [Self; 3] = [Self::X, Self::Z, Self::Radiant];
-
-    /// Its value per lumen at a wavelength, nm.
-    #[inline]
-    fn per_lumen(self, [x, y, z]: [f64; 3]) -> f64 {
-        match self {
-            Self::X => x / y,
-            Self::Z => z / y,
-            Self::Radiant => 1.0 / (MAX_EFFICACY * y),
-        }
-    }
+    pub(crate) const ALL: [Self; 6] =
+        [Self::X, Self::Z, Self::Radiant, Self::X10, Self::Y10, Self::Z10];
 }
 
 /// The stimuli of light of one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stimuli {
     /// By [`Stimulus::ALL`].
-    pub(crate) values: [f64; 3],
+    pub(crate) values: [f64; Stimulus::ALL.len()],
     /// The bin of the spectrum.
     pub(crate) bin: usize,
 }
@@ -48,12 +45,12 @@ impl Stimuli {
     /// Those of a luminous flux at a wavelength, nm.
     #[inline]
     pub(crate) fn of(flux: f64, nm: f64) -> Self {
-        let seen = colour_matching(nm);
+        let [x, y, z] = colour_matching(nm);
+        let wide = colour_matching_10_deg(nm);
         let bin = ((nm - VISIBLE[0]) / BIN_WIDTH) as usize;
-        Self {
-            values: Stimulus::ALL.map(|stimulus| flux * stimulus.per_lumen(seen)),
-            bin: bin.min(SPECTRUM_BINS - 1),
-        }
+        let [x10, y10, z10] = wide.map(|own| own / y);
+        let per_lumen = [x / y, z / y, 1.0 / (MAX_EFFICACY * y), x10, y10, z10];
+        Self { values: per_lumen.map(|own| flux * own), bin: bin.min(SPECTRUM_BINS - 1) }
     }
 }
 
@@ -64,10 +61,14 @@ mod tests {
     #[test]
     fn a_lumen_of_green_has_its_watts_and_its_stimuli() {
         // CIE 1931 at 555 nm: 0.5120501, 1, 0.00574999.
-        let [x, z, watts] = Stimuli::of(MAX_EFFICACY, 555.0).values;
+        let [x, z, watts, x10, y10, z10] = Stimuli::of(MAX_EFFICACY, 555.0).values;
         assert!((watts - 1.0).abs() < 1e-12);
         assert!((x / MAX_EFFICACY - 0.5120501).abs() < 1e-7, "{x}");
         assert!((z / MAX_EFFICACY - 0.00574999).abs() < 1e-7, "{z}");
+        // CIE 1964 at 555 nm.
+        for (found, known) in [x10, y10, z10].into_iter().zip([0.616053, 0.999110, 0.001091]) {
+            assert!((found / MAX_EFFICACY - known).abs() < 1e-6, "{found}");
+        }
     }
 
     #[test]

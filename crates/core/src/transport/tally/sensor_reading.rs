@@ -161,7 +161,7 @@ impl SensorReading {
             for (stimulus, value) in Stimulus::ALL.into_iter().zip(stimuli.values) {
                 sums[layout.stimulus(id, stimulus)] += value;
             }
-            let [_, _, radiant] = stimuli.values;
+            let [_, _, radiant, ..] = stimuli.values;
             sums[layout.spectrum(id, stimuli.bin)] += radiant;
         }
     }

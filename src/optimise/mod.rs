@@ -132,12 +132,16 @@ pub fn run_optimisation(
 fn expect_efficiency(study: &Optimisation, feedback: &PatternFeedback) -> Result<()> {
     let key = Key::of(&["optimise", "pattern_feedback", "efficiency"]);
     let mut problems = Problems::default();
-    if !feedback.efficiency.ends_with(".efficiency") {
-        let message = format!(
-            "`{}` is no efficiency, the share of the light of all sources",
-            feedback.efficiency
-        );
+    let own = &feedback.efficiency;
+    let is_radiant = own.ends_with(".radiant_efficiency");
+    if !is_radiant && !own.ends_with(".efficiency") {
+        let message = format!("`{own}` is no efficiency, the share of the light of all sources");
         problems.error(&key, message).hint("name the `.efficiency` of a sensor");
+    } else if !is_radiant && study.base.scene.fluoresces() {
+        let message = format!(
+            "`{own}` compares lumens, and fluorescence may emit more of them than it absorbs"
+        );
+        problems.error(&key, message).hint("name the `.radiant_efficiency` of a sensor");
     }
     let wanted = [(key, &feedback.efficiency)].into_iter();
     pipeline::expect_measures(&study.base.scene, wanted, &mut problems);

@@ -99,8 +99,11 @@ pub fn compare(
     let job = input::load(scene, &loading)?;
     expect_sense(&job)?;
     if job.scene.is_spectral() {
-        let message =
-            "methods are compared without spectra; remove the key `spectrum` of the sources";
+        let message = if job.scene.fluoresces() {
+            "methods are compared without spectra, so not where media fluoresce"
+        } else {
+            "methods are compared without spectra; remove the key `spectrum` of the sources"
+        };
         return Err(Error::Usage(message.into()));
     }
     if !job.scene.polarisation.is_ignored() {

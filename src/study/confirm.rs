@@ -7,14 +7,18 @@ use lumiduct_core::plan::Request;
 use lumiduct_input::{Keep, Setting, Settings, Study};
 use lumiduct_report::study::{Confirmation, DesignRecord};
 
-/// Traces the best of some designs again by the estimator of the study and by another; `None` if it was interrupted.
+/// Traces the best of some designs again by the estimator of the study and by another, which no scene that fluoresces has; `None`
+/// if it was interrupted.
 pub(crate) fn confirmations(
     batch: &DesignBatch<'_>,
     best: &DesignRecord,
     designs: usize,
 ) -> Result<Option<Vec<Confirmation>>> {
     let run = &batch.study.base.run;
-    let estimators = [run.estimator, second(run.estimator)];
+    let mut estimators = vec![run.estimator];
+    if !batch.study.base.scene.fluoresces() {
+        estimators.push(second(run.estimator));
+    }
     let tracing = DesignTracing::new(batch, [designs + estimators.len(), estimators.len()])?;
     let setting = |name: &String| best.settings.get(name).cloned().unwrap_or(Setting::AsInScene);
     let settings = batch.study.parameters.iter().map(|own| setting(&own.name)).collect();

@@ -55,7 +55,7 @@ out = { plane = {}, on = "ball.surface", counts = "leaving" }
     assert!(!place.names().contains(&"out".to_owned()));
     place.good("run dye.toml --estimator auto --paths 20k -o out -q");
     let report = fs::read_to_string(place.path("out/report.md")).unwrap();
-    assert!(report.contains("fluorescence emits light that the eye sees better"), "{report}");
+    assert!(report.contains("fluorescence emits more of them than it absorbs"), "{report}");
     assert!(report.contains("quantum yield 0.9"), "{report}");
 }
 

@@ -321,7 +321,7 @@ mod tests {
     #[test]
     fn every_key_has_a_description_and_every_number_a_unit_or_a_known_meaning() {
         let pure = "lumiduct index powers cauchy sellmeier share reflectance transmittance n k weight \
-            end_scale sides axis x_axis up north cie_type rounded_share roughness anisotropy a b \
+            end_scale sides axis x_axis up north cie_type rounded_share roughness anisotropy quantum_yield a b \
             g b0 l s power count priority cells pixels lamps rings sectors cosine_power paths \
             batches planned_paths seed bounce_limit depth records max_rays photons relative_error \
             min max equals within sigmas max_std_error";

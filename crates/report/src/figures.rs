@@ -258,7 +258,8 @@ fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Ve
         bar(format!("absorbed in {medium}"), measure, kind::MEDIUM);
     }
     for (medium, measure) in &balance.converted {
-        bar(format!("lost by conversion in {medium}"), measure, kind::MEDIUM);
+        let what = if measure.value < 0.0 { "gained" } else { "lost" };
+        bar(format!("{what} by conversion in {medium}"), measure, kind::MEDIUM);
     }
     bar("cut by the bounce limit".into(), &balance.cut, kind::LOST);
     bar("leaked".into(), &balance.leaked, kind::LOST);

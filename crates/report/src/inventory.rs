@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 use lumiduct_base::number::format_value;
+use lumiduct_core::colour::VISIBLE;
 use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::{
     Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
@@ -110,12 +111,14 @@ fn media(scene: &Scene) -> Listing {
             format!("{} /mm, anisotropy {}", scattering.coefficient(), scattering.anisotropy())
         });
         let fluorescence = medium.fluorescence().map_or(String::new(), |fluorescence| {
-            let emission = fluorescence.emission().spectrum().mean_wavelength();
+            let [first, last] = VISIBLE.map(|end| end as u32);
+            let at = |nm: &u32| fluorescence.absorption_law().at(f64::from(*nm));
+            let peak = (first + 1..=last).max_by(|a, b| at(a).total_cmp(&at(b))).unwrap_or(last);
             format!(
-                "absorbs {}, quantum yield {}, emits about {} nm",
-                absorption(fluorescence.absorption_law()),
+                "absorbs up to {} /mm, at {peak} nm, quantum yield {}, emits about {} nm",
+                format_value(at(&peak)),
                 fluorescence.quantum_yield(),
-                format_value(emission)
+                format_value(fluorescence.emission().mean_wavelength())
             )
         });
         let absorption = absorption(medium.absorption_law());

@@ -14,7 +14,7 @@ pub(crate) struct KeyFigure<'r> {
 }
 
 /// The last parts of the names of measures, what a reader calls them, and whether a terminal shows them.
-const FIGURES: [(&str, &str, bool); 15] = [
+const FIGURES: [(&str, &str, bool); 17] = [
     ("flux", "flux", true),
     ("efficiency", "efficiency", true),
     ("transmission", "transmission", true),
@@ -24,9 +24,11 @@ const FIGURES: [(&str, &str, bool); 15] = [
     ("beam_angle", "beam angle", true),
     ("field_angle", "field angle", false),
     ("radiant_flux", "radiant flux", false),
+    ("radiant_efficiency", "radiant efficiency", false),
     ("colour_u", "u'", true),
     ("colour_v", "v'", true),
     ("colour_temperature", "colour temperature", true),
+    ("duv", "Duv", false),
     ("colour_rendering_ra", "Ra", false),
     ("colour_rendering_r9", "R9", false),
     ("colour_nonuniformity", "colour nonuniformity Δu'v'", true),

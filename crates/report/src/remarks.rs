@@ -4,7 +4,7 @@
 
 use crate::by_light::remark_on_weathers;
 use lumiduct_base::number::{format_percent, format_with_error};
-use lumiduct_core::measure::{LostPaths, Measures, Status};
+use lumiduct_core::measure::{LostPaths, Measure, Measures, Status};
 use lumiduct_core::scene::{CountedLight, Emitter, Place, Scene, Seeing, Sensor, SensorKind};
 use lumiduct_core::transport::GROUPS;
 
@@ -59,8 +59,12 @@ const CLEARLY: f64 = 4.0;
 /// Relative excess required in any case, 1: rounding of sums.
 const ROUNDING: f64 = 1e-9;
 
-/// Remarks on sensors that count more light than exists, as it passes them more than once.
+/// Remarks on sensors that count more light than was emitted, as it passes them more than once or fluorescence has more lumens.
 pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
+    let gains = |(name, line): (&String, &Measure)| {
+        name.starts_with("balance.converted.") && -line.value > CLEARLY * line.std_error
+    };
+    let gains = scene.fluoresces() && measures.values.iter().any(gains);
     let remark = |sensor: &Sensor| {
         let name = &sensor.name;
         let is_above = |what: &&str| {
@@ -78,18 +82,24 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
             SensorKind::Surface(_) | SensorKind::Goniometer(_) => String::new(),
         };
         let value = &measures.values[&format!("{name}.{what}")];
-        let cause = if scene.fluoresces() {
-            format!(
-                "fluorescence emits light that the eye sees better, and light that passes the sensor more than once is \
-                    counted each time; `{name}.radiant_flux` is in watts"
-            )
-        } else {
-            format!("light passes the sensor more than once and is counted each time{way_out}")
-        };
         let value = format_with_error(value.value, value.std_error);
-        Some(format!("the {what} of sensor `{name}` is {value}, above 1: {cause}"))
+        if gains {
+            return Some(format!("`{name}.{what}` is {value}"));
+        }
+        Some(format!(
+            "the {what} of sensor `{name}` is {value}, above 1: light passes the sensor more than once and is \
+                counted each time{way_out}"
+        ))
     };
-    scene.sensors.iter().filter_map(remark).collect()
+    let remarks: Vec<String> = scene.sensors.iter().filter_map(remark).collect();
+    if !gains || remarks.is_empty() {
+        return remarks;
+    }
+    vec![format!(
+        "{}: these compare lumens, and fluorescence emits more of them than it absorbs; `radiant_efficiency` compares \
+            watts. Light that passes a sensor more than once is counted each time",
+        remarks.join(", ")
+    )]
 }
 
 /// Remarks on sensors whose flux is less certain than its error says, as the rays of a source are a sample of the light of a lamp.

@@ -256,18 +256,18 @@ fn steps(class: &PathClass) -> String {
     }
 }
 
-/// Name, flux and share of the lines of the balance worth showing.
+/// Name, flux and share of the lines of the balance worth showing; what is not in the unit of flux, such as heat in W, is no
+/// share.
 pub(crate) fn balance_lines(report: &Report) -> Vec<(&str, String, String)> {
-    let whole = report.measures.source_flux;
+    let (whole, unit) = (report.measures.source_flux, report.measures.unit.flux());
+    let share = |own: &Measure| {
+        if own.unit == unit { format_percent(own.value / whole) } else { String::new() }
+    };
     let lines = report.measures.values.iter().filter(|(name, measure)| {
         let always = name.ends_with(".leaked") || name.ends_with(".residual");
         name.starts_with("balance.") && (measure.value != 0.0 || always)
     });
-    lines
-        .map(|(name, measure)| {
-            (name.as_str(), quantity(measure), format_percent(measure.value / whole))
-        })
-        .collect()
+    lines.map(|(name, measure)| (name.as_str(), quantity(measure), share(measure))).collect()
 }
 
 /// What became of the polarisation of light.

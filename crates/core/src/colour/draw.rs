@@ -7,7 +7,7 @@ use crate::colour::spectrum::Spectrum;
 /// then has at most some 1/0.6 of the mean luminous flux, and no visible light is missed.
 const SHARES: [f64; 3] = [0.6, 0.3, 0.1];
 
-/// Draws wavelengths in proportion to a spectrum, more of them where they matter most to the eye.
+/// Draws wavelengths in proportion to a spectrum, by what matters to the eye or by photons.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectralDraw {
     spectrum: Spectrum,
@@ -30,18 +30,30 @@ struct SpectralPiece {
 }
 
 impl SpectralDraw {
-    /// Prepares drawing from a spectrum.
+    /// Prepares drawing from a spectrum, more where it matters most to the eye.
     pub fn new(spectrum: Spectrum) -> Self {
         let [mean_x, mean_y, mean_z] = spectrum.tristimulus();
         let all = mean_x + mean_y + mean_z;
         let [luminous, stimuli, radiant] = SHARES;
+        Self::with_emphasis(spectrum, |nm| {
+            let [x, y, z] = colour_matching(nm);
+            luminous * y / mean_y + stimuli * (x + y + z) / all + radiant
+        })
+    }
+
+    /// Prepares drawing in proportion to the number of photons, each of the energy hc/λ.
+    pub fn of_photons(spectrum: Spectrum) -> Self {
+        Self::with_emphasis(spectrum, |nm| nm)
+    }
+
+    /// Prepares drawing with a density over spectrum in proportion to a function of the wavelength, nm.
+    fn with_emphasis(spectrum: Spectrum, emphasis: impl Fn(f64) -> f64) -> Self {
         let mut up_to = 0.0;
         let mut pieces: Vec<SpectralPiece> = Vec::new();
         for range in spectrum.pieces() {
             let [low, high] = range;
             let values = range.map(|nm| spectrum.at(nm));
-            let [x, y, z] = colour_matching(0.5 * (low + high));
-            let emphasis = luminous * y / mean_y + stimuli * (x + y + z) / all + radiant;
+            let emphasis = emphasis(0.5 * (low + high));
             up_to += 0.5 * (high - low) * (values[0] + values[1]) * emphasis;
             pieces.push(SpectralPiece { range, values, emphasis, up_to });
         }
@@ -50,7 +62,8 @@ impl SpectralDraw {
             piece.emphasis /= up_to;
             piece.up_to /= up_to;
         }
-        Self { spectrum, pieces, luminous: mean_y }
+        let luminous = spectrum.integral(luminous_efficiency);
+        Self { spectrum, pieces, luminous }
     }
 
     /// The spectrum.
@@ -85,6 +98,12 @@ impl SpectralDraw {
     /// Radiant flux of a draw over the mean of all draws, 1; 0 at wavelengths that are never drawn.
     pub fn relative_power(&self, nm: f64) -> f64 {
         self.piece(nm).map_or(0.0, |piece| 1.0 / piece.emphasis)
+    }
+
+    /// A wavelength of each range of wavelengths that are drawn, nm.
+    pub(crate) fn places(&self) -> impl Iterator<Item = f64> {
+        let drawn = self.pieces.iter().filter(|piece| piece.values != [0.0; 2]);
+        drawn.map(|piece| 0.5 * (piece.range[0] + piece.range[1]))
     }
 
     /// Probability density of a wavelength, 1/nm.

@@ -143,7 +143,7 @@ impl Spectrum {
     }
 
     /// The integral of the spectrum times a function that is linear between whole nm.
-    fn integral(&self, function: impl Fn(f64) -> f64) -> f64 {
+    pub fn integral(&self, function: impl Fn(f64) -> f64) -> f64 {
         let value = |nm: f64| self.at(nm) * function(nm);
         // Simpson's rule is exact for products of linear functions.
         let piece = |[low, high]: [f64; 2]| {

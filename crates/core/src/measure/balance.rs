@@ -25,7 +25,8 @@ pub struct Balance {
     /// was emitted. Only media that fluoresce.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub converted: IndexMap<String, Measure>,
-    /// Radiant flux that fluorescence turned to heat in each of these media, W; not a line of the balance of luminous flux.
+    /// Radiant flux that fluorescence turned to heat in each of these media, W, without what the media absorb themselves; not a
+    /// line of the balance of luminous flux.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub heat: IndexMap<String, Measure>,
     /// Flux that left the scene, by the face of a solid through which it was last transmitted.
@@ -64,7 +65,10 @@ pub(crate) fn balance(evidence: &Evidence<'_>) -> Balance {
     };
     Balance {
         converted: converting(&|medium| line(layout.converted(medium))),
-        heat: converting(&|medium| evidence.sum(&[layout.heat(medium)], 1.0, "W")),
+        heat: converting(&|medium| {
+            let heat = evidence.entry(|flux| flux(layout.heat(medium)));
+            Measure { unit: "W".into(), ..heat }
+        }),
         emitted: evidence.entry(emitted),
         emitted_by_source: sources
             .clone()

@@ -1,4 +1,4 @@
-//! Colour of all light on a sensor, from its tristimulus values (CIE 1931 observer).
+//! Colour of all light on a sensor, from its tristimulus values: CIE 1931 observer, and chromaticities of the CIE 1964 observer.
 
 use crate::colour::{
     Chromaticity, ColourRendering, DominantWavelength, WavelengthKind, colour_rendering,
@@ -7,7 +7,7 @@ use crate::colour::{
 use crate::measure::evidence::Evidence;
 use crate::measure::{Measure, Status};
 use crate::optics::{Fluorescence, Medium};
-use crate::scene::{SensorId, Source};
+use crate::scene::SensorId;
 use crate::transport::{BIN_WIDTH, FIRST_BIN, SPECTRUM_BINS, Stimulus};
 use indexmap::IndexMap;
 
@@ -26,6 +26,9 @@ const CHROMATIC: [(&str, &str, OfChromaticity); 8] = [
     ("duv", "1", |of| Some(correlated_colour_temperature(of)?.duv)),
 ];
 
+/// How many of them, from the first, there are for the CIE 1964 observer, too, and what their names end with.
+const WIDE_FIELD: (usize, &str) = (4, "_10deg");
+
 /// A colour rendering index of those of a spectrum.
 type OfRendering = fn(&ColourRendering) -> f64;
 
@@ -36,9 +39,13 @@ const RENDERING: [(&str, OfRendering); 2] =
 /// All measures of the colour of a sensor's light, by the last part of their dotted names; nothing without spectra.
 pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, Measure> {
     let chromatic = CHROMATIC.map(|(name, ..)| name);
-    let names = ["radiant_flux", "luminous_efficacy"].into_iter().chain(chromatic);
-    let names = names.chain(RENDERING.map(|(name, _)| name));
-    names.filter_map(|name| Some((name.to_owned(), total(evidence, id, name)?))).collect()
+    let names =
+        ["radiant_flux", "radiant_efficiency", "luminous_efficacy"].into_iter().chain(chromatic);
+    let names = names.chain(RENDERING.map(|(name, _)| name)).map(str::to_owned);
+    let (count, ending) = WIDE_FIELD;
+    let wide = chromatic[..count].iter().map(|name| format!("{name}{ending}"));
+    let names = names.chain(wide);
+    names.filter_map(|name| total(evidence, id, &name).map(|found| (name, found))).collect()
 }
 
 /// One of them, at no more cost than it needs.
@@ -48,8 +55,16 @@ pub(crate) fn total(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option
     if let Some((_, index)) = RENDERING.into_iter().find(|(own, _)| *own == name) {
         return Some(stimuli.rendering(index));
     }
+    let (count, ending) = WIDE_FIELD;
+    if let Some(name) = name.strip_suffix(ending) {
+        let (_, unit, value) = CHROMATIC[..count].iter().find(|(own, ..)| *own == name)?;
+        return Some(stimuli.in_wide_field(unit, *value));
+    }
     match name {
-        "radiant_flux" => Some(stimuli.radiant_flux()),
+        "radiant_flux" => Some(stimuli.radiant_flux(1.0, "W")),
+        "radiant_efficiency" => {
+            Some(stimuli.radiant_flux(evidence.scene.source_watts().recip(), "1"))
+        }
         "luminous_efficacy" => Some(stimuli.measure("lm/W", |[_, y, _], watts| Some(y / watts))),
         _ => {
             let (_, unit, value) = CHROMATIC.into_iter().find(|(own, ..)| *own == name)?;
@@ -87,10 +102,10 @@ pub(crate) fn spectrum(evidence: &Evidence<'_>, id: SensorId) -> Option<SensorSp
     let is_dark = |nm: f64| {
         let range = [nm - 0.5 * BIN_WIDTH, nm + 0.5 * BIN_WIDTH];
         let sources = evidence.scene.sources.iter().filter(|source| source.is_lit());
-        let emitted = sources.filter_map(|source| source.spectrum.as_deref());
+        let emitted = sources.filter_map(|source| Some(source.spectrum.as_ref()?.spectrum()));
         let converted = evidence.scene.media.iter().filter_map(Medium::fluorescence);
         let mut spectra = emitted.chain(converted.map(Fluorescence::emission));
-        spectra.all(|own| own.spectrum().share(range) == 0.0)
+        spectra.all(|own| own.share(range) == 0.0)
     };
     let band = |(bin, nm): (usize, &f64)| {
         if is_dark(*nm) {
@@ -114,9 +129,9 @@ struct SensorStimuli<'e, 's> {
 }
 
 impl SensorStimuli<'_, '_> {
-    fn radiant_flux(&self) -> Measure {
-        let slot = self.evidence.layout.stimulus(self.id, Stimulus::Radiant);
-        self.radiant(slot, 1.0, "W")
+    /// Radiant flux times a factor that leads to `unit`.
+    fn radiant_flux(&self, factor: f64, unit: &str) -> Measure {
+        self.radiant(self.evidence.layout.stimulus(self.id, Stimulus::Radiant), factor, unit)
     }
 
     /// A sum of radiant flux times a factor that leads to `unit`; where nothing was counted, its error is that of a path of mean
@@ -127,11 +142,8 @@ impl SensorStimuli<'_, '_> {
             return found;
         }
         let scene = self.evidence.scene;
-        let watts = |source: &Source| {
-            source.spectrum.as_ref().map_or(0.0, |own| source.flux / own.spectrum().efficacy())
-        };
-        let watts: f64 = scene.sources.iter().map(watts).sum();
-        Measure { std_error: found.std_error * watts / scene.source_flux(), ..found }
+        let path = scene.source_flux() * scene.luminous_gain();
+        Measure { std_error: found.std_error * scene.source_watts() / path, ..found }
     }
 
     /// A function of X, Y and Z, lm, and radiant flux, W; it may be undefined for some light.
@@ -143,6 +155,17 @@ impl SensorStimuli<'_, '_> {
         let found = evidence.function(&luminous, unit, |flux| {
             let y = luminous.iter().map(|&slot| flux(slot)).sum();
             function([flux(x), y, flux(z)], flux(radiant)).unwrap_or(f64::NAN)
+        });
+        self.defined(found)
+    }
+
+    /// A function of the chromaticity for the CIE 1964 observer.
+    fn in_wide_field(&self, unit: &str, value: OfChromaticity) -> Measure {
+        let &Self { evidence, id } = self;
+        let slots = [Stimulus::X10, Stimulus::Y10, Stimulus::Z10]
+            .map(|stimulus| evidence.layout.stimulus(id, stimulus));
+        let found = evidence.function(&evidence.layout.flux_slots(id), unit, |flux| {
+            Chromaticity::from_tristimulus(slots.map(flux)).and_then(value).unwrap_or(f64::NAN)
         });
         self.defined(found)
     }

@@ -2,7 +2,7 @@
 //!
 //! This module knows one point in a medium. Emission is isotropic, unpolarised and without delay.
 
-use crate::colour::{MAX_EFFICACY, SpectralDraw, luminous_efficiency};
+use crate::colour::{MAX_EFFICACY, SpectralDraw, Spectrum, luminous_efficiency};
 use crate::optics::AbsorptionLaw;
 
 /// Fluorescent particles or molecules, evenly distributed.
@@ -10,9 +10,12 @@ use crate::optics::AbsorptionLaw;
 pub struct Fluorescence {
     absorption: AbsorptionLaw,
     quantum_yield: f64,
+    /// Drawn by photons, so that light of many conversions keeps the number of its photons, but for the yield.
     emission: SpectralDraw,
     /// Mean wavelength of the radiant flux of the emission, nm.
     mean_wavelength: f64,
+    /// Mean of the luminous efficiency over the radiant flux of the emission, 1.
+    luminous: f64,
 }
 
 /// Light that has been absorbed and emitted again.
@@ -29,9 +32,12 @@ pub(crate) struct Reemission {
 impl Fluorescence {
     /// Fluorescence by an absorption coefficient, the mean number of visible photons emitted for each one absorbed, from 0
     /// to 1, and the spectrum of their radiant flux.
-    pub fn new(absorption: AbsorptionLaw, quantum_yield: f64, emission: SpectralDraw) -> Self {
-        let mean_wavelength = emission.spectrum().mean_wavelength();
-        Self { absorption, quantum_yield, emission, mean_wavelength }
+    pub fn new(absorption: AbsorptionLaw, quantum_yield: f64, emission: Spectrum) -> Self {
+        debug_assert!((0.0..=1.0).contains(&quantum_yield), "{quantum_yield} photons for each one");
+        let mean_wavelength = emission.mean_wavelength();
+        let luminous = emission.efficacy() / MAX_EFFICACY;
+        let emission = SpectralDraw::of_photons(emission);
+        Self { absorption, quantum_yield, emission, mean_wavelength, luminous }
     }
 
     /// Its absorption coefficient by wavelength.
@@ -45,8 +51,8 @@ impl Fluorescence {
     }
 
     /// The spectrum of its emission.
-    pub fn emission(&self) -> &SpectralDraw {
-        &self.emission
+    pub fn emission(&self) -> &Spectrum {
+        self.emission.spectrum()
     }
 
     /// Radiant flux emitted over radiant flux absorbed at a wavelength, nm: a photon of wavelength λ has the energy hc/λ, so
@@ -56,6 +62,11 @@ impl Fluorescence {
         self.quantum_yield * wavelength / self.mean_wavelength
     }
 
+    /// Luminous flux emitted over luminous flux absorbed at a wavelength, nm, on average.
+    pub(crate) fn luminous_yield(&self, wavelength: f64) -> f64 {
+        self.power_yield(wavelength) * self.luminous / luminous_efficiency(wavelength)
+    }
+
     /// Distance that light travels before it is absorbed, mm, for uniform `u` in [0, 1): density `α exp(-α s)`, in 1/mm.
     #[inline]
     pub(crate) fn free_path(&self, wavelength: f64, u: impl FnOnce() -> f64) -> f64 {
@@ -63,7 +74,8 @@ impl Fluorescence {
         if absorption == 0.0 { f64::INFINITY } else { -(-u()).ln_1p() / absorption }
     }
 
-    /// What becomes of absorbed light, for uniform `u`. Its heat is the mean over the emission.
+    /// What becomes of absorbed light, for uniform `u`. Its heat is the mean over the emission; it is negative where light of
+    /// a longer wavelength than the mean of the emission is absorbed, and thermal energy makes up the difference.
     pub(crate) fn emit(&self, wavelength: f64, u: f64) -> Reemission {
         let (drawn, power) = (self.emission.sample(u), self.power_yield(wavelength));
         let before = luminous_efficiency(wavelength);
@@ -79,11 +91,11 @@ impl Fluorescence {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{NoSpectrum, Spectrum, gaussian};
+    use crate::colour::{NoSpectrum, gaussian};
 
     fn phosphor() -> Result<Fluorescence, NoSpectrum> {
         let emission = Spectrum::of_law(|nm| gaussian(nm, 560.0, 120.0))?;
-        Ok(Fluorescence::new(AbsorptionLaw::Constant(2.0), 0.9, SpectralDraw::new(emission)))
+        Ok(Fluorescence::new(AbsorptionLaw::Constant(2.0), 0.9, emission))
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub mod stream {
 /// The purpose of a random number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
-    /// Wavelength of a path.
+    /// Wavelength of a path, at its start or after fluorescence.
     Wavelength,
     /// Start point of a path on a source.
     EmitPosition,
@@ -83,11 +83,11 @@ pub enum Dimension {
     GatherPosition,
     /// Start direction of a gather path.
     GatherDirection,
-    /// Distance in a medium up to a scattering.
+    /// Distance in a medium up to a scattering or to absorption by fluorescence.
     FreePath,
     /// Lobe of a finish: reflected or transmitted, or a part of a mixture.
     Lobe,
-    /// The direction within a lobe, or of a phase function.
+    /// The direction within a lobe, of a phase function, or of fluorescence.
     Scatter,
     /// Whether a path of small throughput survives.
     Roulette,

@@ -107,17 +107,25 @@ impl Scene {
         self.media.iter().any(|medium| medium.fluorescence().is_some())
     }
 
-    /// By how much fluorescence may multiply luminous flux, 1: the largest mean over the light of a source, at least 1.
+    /// Luminous flux of a path after fluorescence over the mean luminous flux of a path at its start, 1: the most of any
+    /// wavelength of a source, on average over the emission, and at least 1.
     pub(crate) fn luminous_gain(&self) -> f64 {
-        let spectra = || self.sources.iter().filter_map(|source| source.spectrum.as_deref());
+        let draws = || self.sources.iter().filter_map(|source| source.spectrum.as_deref());
         let gains = self.media.iter().filter_map(Medium::fluorescence).flat_map(|own| {
-            let emitted = own.emission().spectrum();
-            spectra().map(|from| {
-                let from = from.spectrum();
-                own.power_yield(from.mean_wavelength()) * emitted.efficacy() / from.efficacy()
+            draws().flat_map(|from| {
+                let absorbed = from.places().filter(|nm| own.absorption_law().at(*nm) > 0.0);
+                absorbed.map(|nm| from.relative_flux(nm) * own.luminous_yield(nm))
             })
         });
         gains.fold(1.0, f64::max)
+    }
+
+    /// Radiant flux of all sources, W; 0 without spectra.
+    pub(crate) fn source_watts(&self) -> f64 {
+        let watts = |source: &Source| {
+            source.spectrum.as_ref().map_or(0.0, |own| source.flux / own.spectrum().efficacy())
+        };
+        self.sources.iter().map(watts).sum()
     }
 
     /// Flux of all sources, lm or W.

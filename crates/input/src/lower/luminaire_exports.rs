@@ -47,6 +47,15 @@ impl Context<'_> {
             let hint = "add photometry = \"relative\", or remove `lamps`";
             self.problems.error(&key.field("lamps"), message).hint(hint);
         }
+        let mut media = self.builder.scene().media.iter();
+        if own.photometry == ExportPhotometry::Relative
+            && media.any(|own| own.fluorescence().is_some())
+        {
+            let message =
+                "has no meaning where media fluoresce: they change the lumens of the lamp";
+            let hint = "write photometry = \"absolute\"";
+            return self.refuse(&key.field("photometry"), message, hint);
+        }
         let goniometer = goniometer?;
         let finest = LuminaireExport::of_goniometer(name, goniometer);
         let layout = self.layout(own, &finest.layout, goniometer, &key)?;

@@ -107,6 +107,7 @@ pub(crate) fn lower(
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
     luminaire_exports::note_distances(&scene, &exports, problems);
+    fluorescence::expect_energy(&scene, problems);
     spectra::note_tables(spec, places, &scene, problems);
     spectra::note_library(spec, &scene, problems);
     spectra::note_finish_tables(&finish_tables, &scene, problems);

@@ -12,13 +12,15 @@ use lumiduct_core::colour::{
     DaylightPhase, NoSpectrum, PhosphorWhite, SpectralDraw, SpectralTable, Spectrum, blackbody,
     equal_energy, gaussian, illuminant_a, illuminant_d65,
 };
-use lumiduct_core::optics::{AbsorptionLaw, Medium, REFERENCE_WAVELENGTH};
+use lumiduct_core::optics::{AbsorptionLaw, Fluorescence, Medium, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::Scene;
 use lumiduct_files::spectral::SpectralColumn;
 use std::sync::Arc;
 
 /// Share of light beyond a table that is worth a remark, 1.
 const BEYOND: f64 = 1e-3;
+/// Share that is all the light of a spectrum, up to rounding, 1.
+const ALL: f64 = 1.0 - 1e-9;
 
 /// Whether any source has a spectrum.
 pub(super) fn is_spectral(spec: &SceneSpec) -> bool {
@@ -129,25 +131,39 @@ pub(super) fn note_tables(
     let spectra: Vec<&Spectrum> = lit_spectra(scene).collect();
     for (name, medium) in &spec.media {
         let Some(made) = scene.media.iter().find(|own| own.name() == name) else { continue };
-        let tables = [
-            ("index", matches!(medium.index, IndexSpec::Law(_)), index_table(made.index_law())),
+        let dye = medium.fluorescence.as_ref().zip(made.fluorescence());
+        let dye = dye.map(|(spec, own)| {
+            let is_law = matches!(spec.absorption_per_mm, AbsorptionSpec::Table(_));
             (
-                "absorption_per_mm",
+                ["fluorescence", "absorption_per_mm"].as_slice(),
+                is_law,
+                absorption_table(own.absorption_law()),
+            )
+        });
+        let own = [
+            (
+                ["index"].as_slice(),
+                matches!(medium.index, IndexSpec::Law(_)),
+                index_table(made.index_law()),
+            ),
+            (
+                ["absorption_per_mm"].as_slice(),
                 matches!(medium.absorption_per_mm, AbsorptionSpec::Table(_)),
                 absorption_table(made.absorption_law()),
             ),
         ];
-        for (field, is_law, table) in tables {
-            let key = Key::of(&["media", name, field]);
+        for (fields, is_law, table) in own.into_iter().chain(dye) {
+            let key = fields.iter().fold(Key::of(&["media", name]), |key, field| key.field(field));
             let is_listed = places.is_in_another_file(&key)
-                || field == "index"
+                || fields == ["index"]
                     && matches!(medium.index, IndexSpec::Law(IndexLawSpec::Library(_)));
             if is_law && spectra.is_empty() && !is_listed {
                 problems
                     .warning(&key, "no source has a spectrum: its value at 555 nm applies")
                     .hint("give every source a `spectrum`");
             }
-            let Some([first, last]) = table.map(SpectralTable::range) else { continue };
+            let Some(table) = table else { continue };
+            let [first, last] = table.range();
             let range = format!("{} to {} nm", format_value(first), format_value(last));
             if spectra.is_empty() {
                 if !(first..=last).contains(&REFERENCE_WAVELENGTH) {
@@ -157,19 +173,27 @@ pub(super) fn note_tables(
                 }
                 continue;
             }
-            let inside = |spectrum: &&Spectrum| spectrum.share([first, last]);
-            let least = spectra.iter().map(inside).fold(1.0, f64::min);
-            if least <= 0.0 {
+            let sources = spectra.iter().map(|own| share_beyond(table, own)).fold(0.0, f64::max);
+            let emitted = emissions(scene).map(|own| share_beyond(table, own)).fold(0.0, f64::max);
+            let is_dark = |own: &Spectrum| own.share([first, last]) <= 0.0;
+            let is_unused = lit_spectra(scene).chain(emissions(scene)).all(is_dark);
+            if sources >= ALL || is_unused {
                 problems
                     .error(
                         &key,
                         format!("a source emits no light from {range}, where it has values"),
                     )
                     .hint("give values for its wavelengths; they are in nm");
-            } else if least < 1.0 - BEYOND {
+            } else if sources > BEYOND {
                 let message = format!(
                     "{} of the light of a source is outside of {range}; there the value at the end applies",
-                    format_percent(1.0 - least)
+                    format_percent(sources)
+                );
+                problems.warning(&key, message);
+            } else if emitted > BEYOND {
+                let message = format!(
+                    "{} of the light of fluorescence is outside of {range}; there the value at the end applies",
+                    format_percent(emitted)
                 );
                 problems.warning(&key, message);
             }
@@ -177,12 +201,23 @@ pub(super) fn note_tables(
     }
 }
 
-/// The spectra of the sources that shine, and of fluorescence.
+/// Share of the light of a spectrum beyond the ends of a table, but for ends where its value is 0.
+fn share_beyond(table: &SpectralTable, light: &Spectrum) -> f64 {
+    let [first, last] = table.range();
+    let before = if table.at(first) == 0.0 { 0.0 } else { light.share([0.0, first]) };
+    let after = if table.at(last) == 0.0 { 0.0 } else { light.share([last, f64::INFINITY]) };
+    before + after
+}
+
+/// The spectra of the sources that shine.
 fn lit_spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
     let lit = scene.sources.iter().filter(|source| source.is_lit());
-    let emitted = lit.filter_map(|source| Some(source.spectrum.as_ref()?.spectrum()));
-    let converted = scene.media.iter().filter_map(Medium::fluorescence);
-    emitted.chain(converted.map(|own| own.emission().spectrum()))
+    lit.filter_map(|source| Some(source.spectrum.as_ref()?.spectrum()))
+}
+
+/// The spectra of fluorescence.
+fn emissions(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
+    scene.media.iter().filter_map(Medium::fluorescence).map(Fluorescence::emission)
 }
 
 /// Notes finishes whose tables end within the light that meets them.

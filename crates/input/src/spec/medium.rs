@@ -18,7 +18,7 @@ pub struct MediumSpec {
     pub absorption_per_mm: AbsorptionSpec,
     /// Particles that scatter light, evenly spread, as in diffuser rods; none in a clear medium.
     pub scattering: Option<ScatteringSpec>,
-    /// Phosphors or dyes that absorb light and emit it at other wavelengths; sources need a `spectrum`.
+    /// A phosphor or dye that absorbs light and emits it at other wavelengths; sources need a `spectrum`.
     pub fluorescence: Option<FluorescenceSpec>,
 }
 
@@ -35,15 +35,18 @@ pub struct ScatteringSpec {
     pub anisotropy: f64,
 }
 
-/// Fluorescence of a medium, evenly spread. What is absorbed is emitted in all directions alike, unpolarised. Computed by `forward`.
+/// A phosphor or dye, evenly distributed in a medium. What it absorbs is emitted equally in all directions, unpolarised. Only `forward` can
+/// compute it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FluorescenceSpec {
-    /// Absorption coefficient (natural) of the phosphor or dye, beside that of the medium itself: a table that ends in 0 where
-    /// light is no longer absorbed, toward long wavelengths.
+    /// Absorption coefficient (natural) of the phosphor or dye, in addition to that of the medium: a table that ends in 0 where
+    /// light is no longer absorbed, toward long wavelengths. Emission that overlaps with it is absorbed again. Of the light of no source may more
+    /// power be emitted than absorbed.
     pub absorption_per_mm: AbsorptionSpec,
-    /// Spectrum of what it emits.
+    /// Emission spectrum, radiant flux per wavelength; only the part from 377.5 to 782.5 nm is computed.
     pub emission: SpectrumSpec,
-    /// Quantum yield: photons of the emission for each photon absorbed. The rest, and the difference in energy of the photons, becomes heat.
+    /// Quantum yield: photons emitted, in the visible range, for each photon absorbed. Photons that are not, and the energy that the others lose
+    /// (Stokes shift), become heat.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub quantum_yield: f64,
 }

@@ -9,8 +9,11 @@ use lumiduct_core::measure::{CheckOutcome, Measure};
 pub(super) fn traced_again(report: &StudyReport) -> Option<PagePart> {
     let best = report.best_passing().filter(|_| !report.confirmations.is_empty())?;
     let result = best.outcome.result()?;
-    let words = "The best of many noisy designs is partly luck. It was traced again with random numbers that the search has not used, and \
-        by a second estimator.";
+    let by_another =
+        if report.confirmations.len() > 1 { ", and by a second estimator" } else { "" };
+    let words = format!(
+        "The best of many noisy designs is partly luck. It was traced again with random numbers that the search has not used{by_another}."
+    );
     let own = report.confirmations.iter();
     let head = own.clone().map(|own| format!("seed {}, {}", own.seed, own.estimator));
     let head: Vec<String> =
@@ -24,7 +27,7 @@ pub(super) fn traced_again(report: &StudyReport) -> Option<PagePart> {
             .map(|own| cell(own.outcome.result().and_then(|own| own.measures.get(name))));
         [name.clone(), cell(best.measure(name))].into_iter().chain(again).collect()
     });
-    let mut blocks = vec![Block::Words { text: words.into() }, table(&head, rows.collect())];
+    let mut blocks = vec![Block::Words { text: words }, table(&head, rows.collect())];
     let lines = own.map(|own| Block::Words { text: sentence(own) });
     blocks.extend(lines);
     Some(PagePart::new("Traced again", blocks))

@@ -4,6 +4,7 @@
 //! This module does not know what is counted. Photon paths and gather paths use the same loop: the observer of photon
 //! paths counts flux on sensors, that of gather paths finds their ends and the sources that they meet.
 
+use crate::colour::luminous_efficiency;
 use crate::optics::{Fluorescence, Lobe, Scattered, Side, Stokes, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::{Hits, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
@@ -32,6 +33,9 @@ pub fn walk<V: Observer>(
 ) {
     // A copy of the path's ray that no observer sees: it stays in registers from bounce to bounce.
     let mut ray = path.ray;
+    // By how much conversions have changed the luminous flux of a watt. Roulette acts by radiant flux, or light that the eye
+    // hardly sees would be rare and heavy.
+    let mut luminous_change = 1.0;
     loop {
         let hits = scene.find_next(&ray, &path.on, &path.inside);
         let medium = &scene.media[path.medium.index()];
@@ -73,7 +77,10 @@ pub fn walk<V: Observer>(
                 collide(scattering, &mut path, ray.at(length), sampler, observer)
             }
             Some(Within::Converts(fluorescence)) => {
-                convert(fluorescence, &mut path, ray.at(length), sampler, observer)
+                let before = luminous_efficiency(path.wavelength);
+                let next = convert(fluorescence, &mut path, ray.at(length), sampler, observer);
+                luminous_change *= luminous_efficiency(path.wavelength) / before;
+                next
             }
         };
         match next {
@@ -87,6 +94,7 @@ pub fn walk<V: Observer>(
         let took_row = path.depth > depth + 1;
         let below = observer.roulette_below();
         let below = if took_row { below.min(ROULETTE_AFTER_ROW) } else { below };
+        let below = below * luminous_change;
         if path.throughput < below && roulette(below, &mut path, sampler, observer).is_break() {
             return;
         }

@@ -293,9 +293,9 @@ impl<O: Observer> Observer for Follower<'_, '_, '_, O> {
                 ControlFlow::Break(())
             }
             Event::Depart(..) | Event::Cut(_) | Event::Leaked(..) => self.observer.see(path, event),
-            // Only photon paths are followed where media fluoresce.
-            Event::Convert(_)
-            | Event::Start(_)
+            // A sensor that looks through something sees no light of the medium before it.
+            Event::Convert(_) => ControlFlow::Break(()),
+            Event::Start(_)
             | Event::Detect(_)
             | Event::Meet(_)
             | Event::Absorbed(_)

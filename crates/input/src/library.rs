@@ -7,7 +7,7 @@ use crate::spec::finish::FinishSpec;
 use crate::spec::source::EmissionSpec;
 use indexmap::IndexMap;
 use lumiduct_core::colour::SpectralTable;
-use lumiduct_core::optics::{AbsorptionLaw, IndexLaw};
+use lumiduct_core::optics::{CoefficientLaw, IndexLaw};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::sync::LazyLock;
@@ -63,10 +63,10 @@ impl LibraryMedium {
     }
 
     /// Its absorption by wavelength; `None` where it is not known, as of plastics, whose grades differ.
-    pub fn absorption(&self) -> Option<AbsorptionLaw> {
+    pub fn absorption(&self) -> Option<CoefficientLaw> {
         let LibraryAbsorption::ByNm(rows) = self.absorption_per_mm.as_ref()?;
         let table = SpectralTable::new(rows.clone()).expect("a test reads the library");
-        Some(AbsorptionLaw::Table(table))
+        Some(CoefficientLaw::Table(table))
     }
 }
 

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use lumiduct_base::number::format_value;
 use lumiduct_core::colour::VISIBLE;
-use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, REFERENCE_WAVELENGTH};
+use lumiduct_core::optics::{CoefficientLaw, IndexLaw, Medium, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::{
     Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
 };
@@ -107,8 +107,8 @@ impl Inventory {
 
 fn media(scene: &Scene) -> Listing {
     let rows = scene.media.iter().map(|medium| {
-        let scattering = medium.scattering().map_or(String::new(), |scattering| {
-            format!("{} /mm, anisotropy {}", scattering.coefficient(), scattering.anisotropy())
+        let scattering = medium.turbidity().map_or(String::new(), |own| {
+            format!("{}, anisotropy {}", by_wavelength(&own.coefficient), own.anisotropy)
         });
         let fluorescence = medium.fluorescence().map_or(String::new(), |fluorescence| {
             let [first, last] = VISIBLE.map(|end| end as u32);
@@ -121,7 +121,7 @@ fn media(scene: &Scene) -> Listing {
                 format_value(fluorescence.emission().mean_wavelength())
             )
         });
-        let absorption = absorption(medium.absorption_law());
+        let absorption = by_wavelength(medium.absorption_law());
         [medium.name().to_owned(), index(medium), absorption, scattering, fluorescence]
     });
     let head = ["medium", "index", "absorption", "scattering", "fluorescence"];
@@ -143,12 +143,12 @@ fn index(medium: &Medium) -> String {
     }
 }
 
-/// The absorption coefficient of a medium in words.
-fn absorption(law: &AbsorptionLaw) -> String {
+/// A coefficient of a medium in words.
+fn by_wavelength(law: &CoefficientLaw) -> String {
     let at = |nm: f64| format_value(law.at(nm));
     match law {
-        AbsorptionLaw::Constant(absorption) => format!("{absorption} /mm"),
-        AbsorptionLaw::Table(_) => {
+        CoefficientLaw::Constant(coefficient) => format!("{coefficient} /mm"),
+        CoefficientLaw::Table(_) => {
             format!("{}, {} and {} /mm at 450, 550 and 650 nm", at(450.0), at(550.0), at(650.0))
         }
     }

@@ -58,21 +58,21 @@ impl IndexLaw {
     }
 }
 
-/// Absorption coefficient by wavelength, 1/mm, natural logarithm.
+/// Coefficient of absorption (natural) or scattering by wavelength, 1/mm.
 #[derive(Debug, Clone, PartialEq)]
-pub enum AbsorptionLaw {
+pub enum CoefficientLaw {
     /// The same for all wavelengths.
     Constant(f64),
     /// A table.
     Table(SpectralTable),
 }
 
-impl AbsorptionLaw {
-    /// Absorption coefficient at a wavelength, in nm; 1/mm.
+impl CoefficientLaw {
+    /// The coefficient at a wavelength, in nm; 1/mm.
     #[inline]
     pub fn at(&self, nm: f64) -> f64 {
         match self {
-            Self::Constant(absorption) => *absorption,
+            Self::Constant(coefficient) => *coefficient,
             Self::Table(table) => table.at(nm),
         }
     }

@@ -3,12 +3,12 @@
 //! This module knows one point in a medium. Emission is isotropic, unpolarised and without delay.
 
 use crate::colour::{MAX_EFFICACY, SpectralDraw, Spectrum, luminous_efficiency};
-use crate::optics::AbsorptionLaw;
+use crate::optics::CoefficientLaw;
 
 /// Fluorescent particles or molecules, evenly distributed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fluorescence {
-    absorption: AbsorptionLaw,
+    absorption: CoefficientLaw,
     quantum_yield: f64,
     /// Drawn by photons, so that light of many conversions keeps the number of its photons, but for the yield.
     emission: SpectralDraw,
@@ -32,7 +32,7 @@ pub(crate) struct Reemission {
 impl Fluorescence {
     /// Fluorescence by an absorption coefficient, the mean number of visible photons emitted for each one absorbed, from 0
     /// to 1, and the spectrum of their radiant flux.
-    pub fn new(absorption: AbsorptionLaw, quantum_yield: f64, emission: Spectrum) -> Self {
+    pub fn new(absorption: CoefficientLaw, quantum_yield: f64, emission: Spectrum) -> Self {
         debug_assert!((0.0..=1.0).contains(&quantum_yield), "{quantum_yield} photons for each one");
         let mean_wavelength = emission.mean_wavelength();
         let luminous = emission.efficacy() / MAX_EFFICACY;
@@ -41,7 +41,7 @@ impl Fluorescence {
     }
 
     /// Its absorption coefficient by wavelength.
-    pub fn absorption_law(&self) -> &AbsorptionLaw {
+    pub fn absorption_law(&self) -> &CoefficientLaw {
         &self.absorption
     }
 
@@ -95,7 +95,7 @@ mod tests {
 
     fn phosphor() -> Result<Fluorescence, NoSpectrum> {
         let emission = Spectrum::of_law(|nm| gaussian(nm, 560.0, 120.0))?;
-        Ok(Fluorescence::new(AbsorptionLaw::Constant(2.0), 0.9, emission))
+        Ok(Fluorescence::new(CoefficientLaw::Constant(2.0), 0.9, emission))
     }
 
     #[test]
@@ -126,7 +126,7 @@ mod tests {
         let at = |step: u32| (f64::from(step) + 0.5) / f64::from(COUNT);
         let sum: f64 = (0..COUNT).map(|step| phosphor.free_path(450.0, || at(step))).sum();
         assert!((sum / f64::from(COUNT) - 0.5).abs() < 1e-3);
-        let clear = Fluorescence { absorption: AbsorptionLaw::Constant(0.0), ..phosphor };
+        let clear = Fluorescence { absorption: CoefficientLaw::Constant(0.0), ..phosphor };
         assert_eq!(clear.free_path(450.0, || unreachable!("no number is drawn")), f64::INFINITY);
         Ok(())
     }

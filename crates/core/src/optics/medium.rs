@@ -1,6 +1,6 @@
 //! Media: refractive index, absorption, scattering and fluorescence.
 
-use crate::optics::dispersion::{AbsorptionLaw, IndexLaw};
+use crate::optics::dispersion::{CoefficientLaw, IndexLaw};
 use crate::optics::{Fluorescence, VolumeScattering};
 use std::sync::Arc;
 
@@ -9,26 +9,35 @@ use std::sync::Arc;
 pub struct Medium {
     name: String,
     index: IndexLaw,
-    absorption: AbsorptionLaw,
-    scattering: Option<VolumeScattering>,
+    absorption: CoefficientLaw,
+    turbidity: Option<Turbidity>,
     fluorescence: Option<Arc<Fluorescence>>,
+}
+
+/// Scattering of a medium by wavelength.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turbidity {
+    /// Scattering coefficient: the reciprocal of the mean free path.
+    pub coefficient: CoefficientLaw,
+    /// Mean cosine of the scattering angle, 1, between -1 and 1.
+    pub anisotropy: f64,
 }
 
 impl Medium {
     /// A medium of constant refractive index and absorption coefficient, in 1/mm, (natural logarithm).
     pub fn new(name: &str, index: f64, absorption_per_mm: f64) -> Self {
-        let absorption = AbsorptionLaw::Constant(absorption_per_mm);
+        let absorption = CoefficientLaw::Constant(absorption_per_mm);
         Self::dispersive(name, IndexLaw::Constant(index), absorption)
     }
 
     /// A medium by its laws.
-    pub fn dispersive(name: &str, index: IndexLaw, absorption: AbsorptionLaw) -> Self {
-        Self { name: name.to_owned(), index, absorption, scattering: None, fluorescence: None }
+    pub fn dispersive(name: &str, index: IndexLaw, absorption: CoefficientLaw) -> Self {
+        Self { name: name.to_owned(), index, absorption, turbidity: None, fluorescence: None }
     }
 
     /// The same medium, turbid.
-    pub fn with_scattering(self, scattering: VolumeScattering) -> Self {
-        Self { scattering: Some(scattering), ..self }
+    pub fn with_scattering(self, turbidity: Turbidity) -> Self {
+        Self { turbidity: Some(turbidity), ..self }
     }
 
     /// The same medium with phosphors or dyes in it.
@@ -59,14 +68,22 @@ impl Medium {
     }
 
     /// Its absorption coefficient by wavelength.
-    pub fn absorption_law(&self) -> &AbsorptionLaw {
+    pub fn absorption_law(&self) -> &CoefficientLaw {
         &self.absorption
     }
 
-    /// Scattering of the medium; `None` for a clear medium.
+    /// Scattering of the medium at any wavelength; `None` for a clear medium.
     #[inline]
-    pub fn scattering(&self) -> Option<&VolumeScattering> {
-        self.scattering.as_ref()
+    pub fn turbidity(&self) -> Option<&Turbidity> {
+        self.turbidity.as_ref()
+    }
+
+    /// Scattering of the medium at a wavelength, in nm; `None` where it is clear.
+    #[inline]
+    pub fn scattering(&self, wavelength: f64) -> Option<VolumeScattering> {
+        let Turbidity { coefficient, anisotropy } = self.turbidity.as_ref()?;
+        let coefficient = coefficient.at(wavelength);
+        (coefficient > 0.0).then(|| VolumeScattering::new(coefficient, *anisotropy))
     }
 
     /// Fluorescence of the medium, if it has any.

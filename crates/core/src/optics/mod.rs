@@ -27,7 +27,7 @@ pub use bsdf::sheet::{
 };
 pub use bsdf::table::BsdfTable;
 pub use coating::{LayerStack, ThinLayer};
-pub use dispersion::{AbsorptionLaw, IndexLaw, REFERENCE_WAVELENGTH};
+pub use dispersion::{CoefficientLaw, IndexLaw, REFERENCE_WAVELENGTH};
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use finish::Finish;
 pub use finish::faces::Faces;
@@ -40,7 +40,7 @@ pub use fluorescence::Fluorescence;
 pub use gaussian::Gaussian;
 pub use haze::profile::HazeLaw;
 pub use incidence::{Incidence, Lobe, Scattered, Shares, Side};
-pub use medium::Medium;
+pub use medium::{Medium, Turbidity};
 #[cfg(test)]
 pub(crate) use sky::CIE_TYPES;
 pub(crate) use sky::SkyBound;

@@ -8,7 +8,7 @@ use crate::problems::name_hint;
 use crate::spec::spectrum::{AbsorptionSpec, AbsorptionTableSpec, IndexLawSpec, IndexSpec};
 use lumiduct_base::number::format_value;
 use lumiduct_core::colour::{SpectralTable, VISIBLE};
-use lumiduct_core::optics::{AbsorptionLaw, IndexLaw};
+use lumiduct_core::optics::{CoefficientLaw, IndexLaw};
 use lumiduct_files::spectral::{self, SpectralColumn, SpectralValues};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -112,10 +112,10 @@ impl Context<'_> {
         &mut self,
         spec: &AbsorptionSpec,
         key: &Key,
-    ) -> Option<AbsorptionLaw> {
+    ) -> Option<CoefficientLaw> {
         let (rows, key) = match spec {
             AbsorptionSpec::Constant(absorption) => {
-                return Some(AbsorptionLaw::Constant(*absorption));
+                return Some(CoefficientLaw::Constant(*absorption));
             }
             AbsorptionSpec::Table(AbsorptionTableSpec::ByNm(rows)) => {
                 (rows.clone(), key.field("by_nm"))
@@ -128,11 +128,21 @@ impl Context<'_> {
                 (if is_extinction { by_extinction(&found.rows) } else { found.rows }, key)
             }
         };
+        self.coefficients(rows, &key, "expected 0 or more: media do not amplify light")
+    }
+
+    /// A table of coefficients, 1/mm, none of which is negative, for the reason of a hint.
+    pub(super) fn coefficients(
+        &mut self,
+        rows: Vec<[f64; 2]>,
+        key: &Key,
+        hint: &str,
+    ) -> Option<CoefficientLaw> {
         if let Some([nm, value]) = rows.iter().find(|[_, value]| *value < 0.0) {
             let message = format!("is {} /mm at {nm} nm", format_value(*value));
-            return self.refuse(&key, message, "expected 0 or more: media do not amplify light");
+            return self.refuse(key, message, hint);
         }
-        Some(AbsorptionLaw::Table(self.spectral_table(rows, &key)?))
+        Some(CoefficientLaw::Table(self.spectral_table(rows, key)?))
     }
 
     /// A law of the library; the hash of the scene contains its index at every visible nm.

@@ -4,9 +4,13 @@ use crate::keys::Key;
 use crate::library;
 use crate::lower::context::Context;
 use crate::spec::PREDEFINED_MEDIA;
-use crate::spec::medium::ScatteringSpec;
-use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, VolumeScattering};
+use crate::spec::medium::{ScatteringCoefficientSpec, ScatteringSpec, ScatteringTableSpec};
+use lumiduct_core::optics::{CoefficientLaw, IndexLaw, Medium, Turbidity};
 use lumiduct_core::scene::MediumId;
+use lumiduct_files::spectral::SpectralColumn;
+
+/// What is wrong with a negative coefficient of scattering.
+const TURBID: &str = "expected 0 or more: 0 where the medium is clear";
 
 /// The names of the library.
 pub(super) fn library_names() -> impl Iterator<Item = &'static str> + Clone {
@@ -25,12 +29,14 @@ impl Context<'_> {
             let clear = Medium::dispersive(
                 name,
                 index.unwrap_or(IndexLaw::Constant(1.0)),
-                absorption.unwrap_or(AbsorptionLaw::Constant(0.0)),
+                absorption.unwrap_or(CoefficientLaw::Constant(0.0)),
             );
-            let turbid = match medium.scattering {
-                Some(ScatteringSpec { per_mm, anisotropy }) => {
-                    clear.with_scattering(VolumeScattering::new(per_mm, anisotropy))
-                }
+            let turbidity = medium
+                .scattering
+                .as_ref()
+                .and_then(|spec| self.turbidity(spec, &key.field("scattering")));
+            let turbid = match turbidity {
+                Some(turbidity) => clear.with_scattering(turbidity),
                 None => clear,
             };
             let fluorescence = medium
@@ -66,6 +72,28 @@ impl Context<'_> {
         }
     }
 
+    /// How a medium scatters.
+    fn turbidity(
+        &mut self,
+        ScatteringSpec { per_mm, anisotropy }: &ScatteringSpec,
+        key: &Key,
+    ) -> Option<Turbidity> {
+        let key = key.field("per_mm");
+        let coefficient = match per_mm {
+            ScatteringCoefficientSpec::Constant(per_mm) => CoefficientLaw::Constant(*per_mm),
+            ScatteringCoefficientSpec::Table(ScatteringTableSpec::ByNm(rows)) => {
+                self.coefficients(rows.clone(), &key.field("by_nm"), TURBID)?
+            }
+            ScatteringCoefficientSpec::Table(ScatteringTableSpec::Csv(file)) => {
+                let key = key.field("csv");
+                let columns = SpectralColumn::Named(&["scattering_per_mm"]);
+                let found = self.read_by_wavelength(file, columns, &key)?;
+                self.coefficients(found.rows, &key, TURBID)?
+            }
+        };
+        Some(Turbidity { coefficient, anisotropy: *anisotropy })
+    }
+
     /// The medium of a name: one of the file, or of the library.
     pub(super) fn medium(&mut self, name: &str, key: &Key) -> Option<MediumId> {
         if let Some(medium) = self.media.get(name) {
@@ -77,8 +105,8 @@ impl Context<'_> {
             return None;
         };
         let index = self.hashed(known.law());
-        let absorption = known.absorption().unwrap_or(AbsorptionLaw::Constant(0.0));
-        if let AbsorptionLaw::Table(table) = &absorption {
+        let absorption = known.absorption().unwrap_or(CoefficientLaw::Constant(0.0));
+        if let CoefficientLaw::Table(table) = &absorption {
             let numbers = table.rows().iter().flatten();
             numbers.for_each(|number| self.meshes.add(&number.to_le_bytes()));
         }

@@ -6,13 +6,13 @@ use crate::lower::context::{Context, FinishTable};
 use crate::lower::laws::index_table;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
-use crate::spec::spectrum::{AbsorptionSpec, IndexLawSpec, IndexSpec, SpectrumSpec};
+use crate::spec::spectrum::{IndexLawSpec, IndexSpec, SpectrumSpec};
 use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_core::colour::{
     DaylightPhase, NoSpectrum, PhosphorWhite, SpectralDraw, SpectralTable, Spectrum, blackbody,
     equal_energy, gaussian, illuminant_a, illuminant_d65,
 };
-use lumiduct_core::optics::{AbsorptionLaw, Fluorescence, Medium, REFERENCE_WAVELENGTH};
+use lumiduct_core::optics::{CoefficientLaw, Fluorescence, Medium, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::Scene;
 use lumiduct_files::spectral::SpectralColumn;
 use std::sync::Arc;
@@ -131,33 +131,21 @@ pub(super) fn note_tables(
     let spectra: Vec<&Spectrum> = lit_spectra(scene).collect();
     for (name, medium) in &spec.media {
         let Some(made) = scene.media.iter().find(|own| own.name() == name) else { continue };
-        let dye = medium.fluorescence.as_ref().zip(made.fluorescence());
-        let dye = dye.map(|(spec, own)| {
-            let is_law = matches!(spec.absorption_per_mm, AbsorptionSpec::Table(_));
-            (
-                ["fluorescence", "absorption_per_mm"].as_slice(),
-                is_law,
-                absorption_table(own.absorption_law()),
-            )
-        });
-        let own = [
-            (
-                ["index"].as_slice(),
-                matches!(medium.index, IndexSpec::Law(_)),
-                index_table(made.index_law()),
-            ),
-            (
-                ["absorption_per_mm"].as_slice(),
-                matches!(medium.absorption_per_mm, AbsorptionSpec::Table(_)),
-                absorption_table(made.absorption_law()),
-            ),
+        let scattering = made.turbidity().map(|own| &own.coefficient);
+        let dye = made.fluorescence().map(Fluorescence::absorption_law);
+        let is_formula = matches!(medium.index, IndexSpec::Law(_));
+        let tables = [
+            (["index"].as_slice(), is_formula, index_table(made.index_law())),
+            (&["absorption_per_mm"], false, coefficient_table(made.absorption_law())),
+            (&["scattering", "per_mm"], false, scattering.and_then(coefficient_table)),
+            (&["fluorescence", "absorption_per_mm"], false, dye.and_then(coefficient_table)),
         ];
-        for (fields, is_law, table) in own.into_iter().chain(dye) {
+        for (fields, is_formula, table) in tables {
             let key = fields.iter().fold(Key::of(&["media", name]), |key, field| key.field(field));
             let is_listed = places.is_in_another_file(&key)
                 || fields == ["index"]
                     && matches!(medium.index, IndexSpec::Law(IndexLawSpec::Library(_)));
-            if is_law && spectra.is_empty() && !is_listed {
+            if (is_formula || table.is_some()) && spectra.is_empty() && !is_listed {
                 problems
                     .warning(&key, "no source has a spectrum: its value at 555 nm applies")
                     .hint("give every source a `spectrum`");
@@ -275,9 +263,9 @@ pub(super) fn note_library(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
     }
 }
 
-fn absorption_table(law: &AbsorptionLaw) -> Option<&SpectralTable> {
+fn coefficient_table(law: &CoefficientLaw) -> Option<&SpectralTable> {
     match law {
-        AbsorptionLaw::Table(table) => Some(table),
-        AbsorptionLaw::Constant(_) => None,
+        CoefficientLaw::Table(table) => Some(table),
+        CoefficientLaw::Constant(_) => None,
     }
 }

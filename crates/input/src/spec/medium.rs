@@ -23,16 +23,35 @@ pub struct MediumSpec {
 }
 
 /// Scattering within a medium.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScatteringSpec {
     /// Scattering coefficient: the inverse of the mean free path between scatterings.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub per_mm: f64,
+    pub per_mm: ScatteringCoefficientSpec,
     /// Mean cosine of the scattering angle, for the Henyey-Greenstein phase function: 0 is isotropic, near 1 mostly
     /// forward (particles larger than a wavelength), below 0 mostly backward.
     #[serde(default)]
     #[schemars(range(min = -0.999, max = 0.999))]
     pub anisotropy: f64,
+}
+
+/// Scattering coefficient: a number, or a table by wavelength.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ScatteringCoefficientSpec {
+    /// The same at every wavelength.
+    Constant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// By wavelength.
+    Table(ScatteringTableSpec),
+}
+
+/// Scattering coefficient by wavelength. A table with exactly one of these keys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ScatteringTableSpec {
+    /// Pairs of wavelength and coefficient, 1/mm, linear in between and constant beyond; 0 where the medium is clear.
+    ByNm(#[schemars(length(min = 2))] Vec<[f64; 2]>),
+    /// A CSV file with a column `nm` or `um`, the first, and a column `scattering_per_mm`. A relative path is relative to the scene file.
+    Csv(String),
 }
 
 /// A phosphor or dye, evenly distributed in a medium. What it absorbs is emitted equally in all directions, unpolarised. Only `forward` can

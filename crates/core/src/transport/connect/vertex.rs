@@ -20,7 +20,7 @@ pub(crate) fn scatters(scene: &Scene) -> bool {
 
 /// The names of the media of a scene that scatter light.
 pub fn turbid_media(scene: &Scene) -> impl Iterator<Item = &str> {
-    scene.media.iter().filter(|medium| medium.scattering().is_some()).map(Medium::name)
+    scene.media.iter().filter(|medium| medium.turbidity().is_some()).map(Medium::name)
 }
 
 /// A vertex that scatters.

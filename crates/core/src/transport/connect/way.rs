@@ -59,7 +59,7 @@ impl WayStart {
             let hits = hits.filter(|hits| hits.distance() < left - scene.tolerance);
             let piece = hits.as_ref().map_or(left, Hits::distance);
             transmittance *= own.transmittance(*wavelength, piece);
-            if let Some(scattering) = own.scattering() {
+            if let Some(scattering) = own.scattering(*wavelength) {
                 transmittance *= (-scattering.coefficient() * piece).exp();
             }
             let Some(hits) = hits else {

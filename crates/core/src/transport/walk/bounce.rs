@@ -42,7 +42,7 @@ pub fn walk<V: Observer>(
         let mut length = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
         let mut within = None;
         // Clear media draw nothing; a path that meets no surface has left all bodies, or leaks.
-        if let (Some(scattering), Some(_)) = (medium.scattering(), &hits) {
+        if let (Some(scattering), Some(_)) = (medium.scattering(path.wavelength), &hits) {
             let free = scattering.free_path(sampler.one(Dimension::FreePath));
             if free < length {
                 (length, within) = (free, Some(Within::Scatters(scattering)));
@@ -74,7 +74,7 @@ pub fn walk<V: Observer>(
         let next = match within {
             None => bounce(scene, &mut path, (&ray, hits), bounce_limit, sampler, observer),
             Some(Within::Scatters(scattering)) => {
-                collide(scattering, &mut path, ray.at(length), sampler, observer)
+                collide(&scattering, &mut path, ray.at(length), sampler, observer)
             }
             Some(Within::Converts(fluorescence)) => {
                 let before = luminous_efficiency(path.wavelength);
@@ -103,7 +103,7 @@ pub fn walk<V: Observer>(
 
 /// What happens to a path within a medium, before it meets an interface.
 enum Within<'a> {
-    Scatters(&'a VolumeScattering),
+    Scatters(VolumeScattering),
     Converts(&'a Fluorescence),
 }
 

@@ -88,7 +88,7 @@ fn row(
 ) -> Option<(BounceRow, RowLight)> {
     let medium = &scene.media[path.medium.index()];
     let (wall, met) = (reach.wall, facing(scene, path, vertex));
-    if medium.scattering().is_some() || medium.fluorescence().is_some() {
+    if medium.turbidity().is_some() || medium.fluorescence().is_some() {
         return None;
     }
     let PrimHit { face, toward, .. } = *vertex.interface.acting;

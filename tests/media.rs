@@ -1,4 +1,4 @@
-//! Light that a fluorescent medium absorbs and emits at other wavelengths, against laws.
+//! Light that media scatter by its wavelength, or absorb and emit at other wavelengths, against laws.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -34,9 +34,13 @@ far = { goniometer = { c_step_deg = 90, gamma_step_deg = 45 } }
 "#;
 
 fn measures(text: &str, paths: u64) -> Measures {
+    measured_by(Request::Forward, text, paths)
+}
+
+fn measured_by(estimator: Request, text: &str, paths: u64) -> Measures {
     let settings = Settings {
         paths: Some(paths),
-        estimator: Some(Request::Forward),
+        estimator: Some(estimator),
         seed: Some(7),
         ..Settings::default()
     };
@@ -151,5 +155,59 @@ fn all_power_in_a_closed_mirror_becomes_heat_if_the_dye_absorbs_its_own_light() 
         let mirror = "[finishes]\nmirror = { specular = { reflectance = 1 } }\n";
         let found = measures(&format!("{mirror}{text}"), 50_000);
         assert_is(&found, "balance.heat.dye", 2.0);
+    }
+}
+
+/// A slab that scatters blue light more than red, lit by a lamp of two lines.
+fn slab(source: &str, sensor: &str) -> String {
+    format!(
+        r#"
+[media.haze]
+index = 1
+scattering = {{ per_mm = {{ by_nm = [[450, 0.4], [650, 0.1]] }}, anisotropy = 0.3 }}
+[solids.slab.cylinder]
+radius_mm = 20
+length_mm = 5
+medium = "haze"
+[sources.lamp.disk]
+at = {{ position_mm = [0, 0, -1] }}
+flux_w = 1
+spectrum = {{ sum = [
+    {{ share = 0.5, spectrum = {{ line_nm = 450 }} }},
+    {{ share = 0.5, spectrum = {{ line_nm = 650 }} }},
+] }}
+{source}
+[sensors]
+{sensor}
+"#
+    )
+}
+
+#[test]
+fn the_beam_through_a_turbid_slab_loses_what_it_scatters_at_each_wavelength() {
+    let text = slab(
+        "radius_mm = 0.2\nemission = \"collimated\"",
+        "far = { plane = { disk = { radius_mm = 0.3 } }, at = { position_mm = [0, 0, 3000], axis = [0, 0, -1] } }",
+    );
+    let found = measures(&text, 200_000);
+    let passed = [0.4, 0.1].map(|per_mm: f64| 0.5 * (-per_mm * 5.0).exp());
+    assert_is(&found, "far.radiant_flux", passed[0] + passed[1]);
+    // CIE 1931: V(450 nm) = 0.038, V(650 nm) = 0.107.
+    assert_is(&found, "far.flux", 683.002 * (0.038 * passed[0] + 0.107 * passed[1]));
+}
+
+#[test]
+fn photons_and_gather_paths_see_the_same_colour_through_a_turbid_slab() {
+    let text = slab(
+        "radius_mm = 4",
+        "above = { plane = { disk = { radius_mm = 5 } }, at = { position_mm = [0, 0, 8], axis = [0, 0, -1] } }",
+    );
+    let [photons, both] =
+        [Request::Forward, Request::Mix].map(|own| measured_by(own, &text, 100_000));
+    for name in ["above.flux", "above.radiant_flux", "above.colour_x", "above.colour_y"] {
+        let [one, other] = [&photons, &both].map(|found| &found.values[name]);
+        let error = one.std_error.hypot(other.std_error);
+        assert!((one.value - other.value).abs() <= 4.0 * error, "{name}: {one}, {other}");
+        assert!(error < 0.01 * one.value, "{name}: {one}, {other}");
     }
 }

@@ -14,7 +14,9 @@ mod designs;
 mod execute;
 mod facts;
 mod production;
+mod race;
 mod sampling;
+mod score;
 mod search;
 mod store;
 

@@ -1,24 +1,24 @@
 //! A search for the best design: Nelder and Mead's simplex within the ranges of the parameters, restarted where it has converged (Luersen
-//! and Le Riche, Comput. Struct. 82 (2004) 2251). `docs/study_format.md` compares it with other methods.
+//! and Le Riche, Comput. Struct. 82 (2004) 2251). `docs/study_format.md` compares it with other methods. Combinations of choices race
+//! each other, each with a simplex of its own.
 //!
 //! A resumed search proposes the same designs again and takes their records.
 
 use crate::study::designs::Design;
 use crate::study::execute::{BestDesign, DesignBatch, DesignEnd, DesignTracing, expect_design};
+use crate::study::race::{ChoiceSet, Race, ScoredDesign};
 use crate::study::sampling::quantile;
+use crate::study::score::score;
 use basin::{
     BoxBounds, ConstraintDescription, ConstraintSet, ConstraintSolveError, Constraints,
     CostFunction, Executor, Gbnm, PointState,
 };
 use lumiduct_base::error::{Error, Result};
-use lumiduct_core::measure::shortfall;
-use lumiduct_core::plan::Check;
-use lumiduct_input::{Best, Domain, Parameter, Ranking, SearchPlan, Setting};
+use lumiduct_input::{Domain, Parameter, Ranking, SearchPlan, Setting};
 use lumiduct_report::study::DesignRecord;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::rc::Rc;
 
 /// Edge of the first simplex, as a share of the ranges, 1.
 const FIRST_EDGE: f64 = 0.25;
@@ -88,30 +88,49 @@ fn propose(
     plan: &SearchPlan,
     measured: impl FnMut(&Design) -> std::result::Result<f64, ProposalStop>,
 ) -> Result<ProposalEnd> {
-    let searched = parameters.iter().filter(|own| is_searched(own));
+    let most = plan.designs as usize;
+    let (measured, known) = (RefCell::new(measured), RefCell::new(Vec::new()));
+    let searched = parameters.iter().filter(|own| is_searched(own)).count();
+    let mut race = Race::new(parameters, most);
+    loop {
+        let designs = known.borrow().len();
+        let Some(lap) = race.next_lap(designs) else { return Ok(ProposalEnd::Complete(designs)) };
+        for entrant in lap.entrants {
+            let proposed = Proposed {
+                parameters,
+                combination: race.combination(entrant),
+                most: lap.designs,
+                sides: [0.0, 1.0].map(|side| vec![side; searched]),
+                measured: &measured,
+                known: &known,
+            };
+            if !propose_within(proposed, plan)? {
+                return Ok(ProposalEnd::Stopped);
+            }
+        }
+        race.end_lap(&known.borrow());
+    }
+}
+
+/// Proposes designs of one combination of choices; `false` if it was interrupted. Designs that are known cost nothing: the
+/// simplex takes the same way again.
+fn propose_within<Measured>(proposed: Proposed<'_, Measured>, plan: &SearchPlan) -> Result<bool>
+where
+    Measured: FnMut(&Design) -> std::result::Result<f64, ProposalStop>,
+{
+    let most = MOST_PROPOSALS * u64::from(plan.designs);
+    let searched = proposed.parameters.iter().filter(|own| is_searched(own));
     let start: Vec<f64> = searched.map(|own| nominal_share(own).unwrap_or(0.5)).collect();
-    let known = Rc::new(RefCell::new(Vec::new()));
-    let proposed = Proposed {
-        parameters,
-        most: plan.designs as usize,
-        sides: [vec![0.0; start.len()], vec![1.0; start.len()]],
-        measured: RefCell::new(measured),
-        known: Rc::clone(&known),
-    };
     // The first design is the scene as it is, as far as it lies within the ranges.
     let first = proposed.cost(&start).map(|_| ()).map_err(ConstraintSolveError::Evaluation);
     let method = Gbnm::new(plan.seed).with_initial_simplex_fraction(FIRST_EDGE);
     let ended = first.and_then(|()| {
         let executor = Executor::new(proposed, method, PointState::new(start));
-        executor.max_cost_evals(MOST_PROPOSALS * u64::from(plan.designs)).run().map(|_| ())
+        executor.max_cost_evals(most).run().map(|_| ())
     });
     match ended {
-        Ok(()) | Err(ConstraintSolveError::Evaluation(ProposalStop::Full)) => {
-            Ok(ProposalEnd::Complete(known.borrow().len()))
-        }
-        Err(ConstraintSolveError::Evaluation(ProposalStop::Interrupted)) => {
-            Ok(ProposalEnd::Stopped)
-        }
+        Ok(()) | Err(ConstraintSolveError::Evaluation(ProposalStop::Full)) => Ok(true),
+        Err(ConstraintSolveError::Evaluation(ProposalStop::Interrupted)) => Ok(false),
         Err(ConstraintSolveError::Evaluation(ProposalStop::Failed(error))) => Err(error),
         // Bounds that are none; those of shares are 0 and 1.
         Err(_) => Err(Error::Usage("the ranges cannot be searched".to_owned())),
@@ -141,9 +160,12 @@ fn recorded<'r>(
     Ok(record)
 }
 
-/// Whether the search varies a parameter.
+/// Whether a simplex varies a parameter.
 fn is_searched(parameter: &Parameter) -> bool {
-    parameter.domain != Domain::AsInScene
+    match parameter.domain {
+        Domain::Uniform { .. } => true,
+        Domain::Levels(_) | Domain::Normal { .. } | Domain::Listed | Domain::AsInScene => false,
+    }
 }
 
 /// Where the value of the scene lies in the range of a parameter, 0..=1; `None` if it is not known or outside.
@@ -172,22 +194,17 @@ fn setting(parameter: &Parameter, share: f64) -> Setting {
     }
 }
 
-/// Designs as a function of the shares of their ranges.
+/// Designs of a combination of choices, as a function of the shares of the ranges of all else.
 struct Proposed<'a, Measured> {
     parameters: &'a [Parameter],
-    /// Most designs.
+    combination: &'a ChoiceSet,
+    /// Most designs of this combination.
     most: usize,
     /// The lowest and the highest shares.
     sides: [Vec<f64>; 2],
-    measured: RefCell<Measured>,
-    /// The designs so far.
-    known: Rc<RefCell<Vec<ScoredDesign>>>,
-}
-
-/// A design that was measured.
-struct ScoredDesign {
-    settings: Vec<Setting>,
-    score: f64,
+    measured: &'a RefCell<Measured>,
+    /// The designs so far, of any combination.
+    known: &'a RefCell<Vec<ScoredDesign>>,
 }
 
 impl<Measured> Proposed<'_, Measured>
@@ -200,7 +217,7 @@ where
         if let Some(known) = known.iter().find(|own| own.settings == settings) {
             return Ok(known.score);
         }
-        if known.len() == self.most {
+        if known.iter().filter(|own| self.combination.is_of(&own.settings)).count() >= self.most {
             return Err(ProposalStop::Full);
         }
         let design = Design { number: known.len() + 1, settings };
@@ -233,35 +250,15 @@ where
             true => shares.next().map_or(Setting::AsInScene, |share| setting(parameter, *share)),
             false => Setting::AsInScene,
         };
-        self.score_of(self.parameters.iter().map(setting).collect())
+        let mut settings: Vec<Setting> = self.parameters.iter().map(setting).collect();
+        self.combination.set(&mut settings);
+        self.score_of(settings)
     }
-}
-
-/// The objective to minimise: below 1 for a design that passes every check, in the order of the ranking; above 1 for others, by their
-/// shortfall (Deb, Comput. Methods Appl. Mech. Eng. 186 (2000) 311); infinite where nothing could be measured.
-pub(crate) fn score(ranking: &Ranking, record: &DesignRecord) -> f64 {
-    let Some(result) = record.outcome.result() else { return f64::INFINITY };
-    if !record.passes() {
-        let of = |check: &Check| {
-            result
-                .measures
-                .get(&check.measure)
-                .map_or(f64::INFINITY, |found| shortfall(check, found))
-        };
-        return 1.0 + result.checks.iter().map(|own| of(&own.check)).sum::<f64>();
-    }
-    let value = record.measure(&ranking.measure).map_or(f64::NAN, |own| own.value);
-    let cost = match ranking.best {
-        Best::Highest => -value,
-        Best::Lowest => value,
-    };
-    if cost.is_nan() { f64::INFINITY } else { cost / (1.0 + cost.abs()) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::analysis::testing::design;
     use indexmap::IndexMap;
     use rand_core::{Rng, SeedableRng};
     use rand_xoshiro::SplitMix64;
@@ -347,12 +344,26 @@ mod tests {
     }
 
     #[test]
-    fn designs_that_pass_come_before_all_others_whatever_their_values() {
-        let ranking = |best| Ranking { measure: "exit.flux".to_owned(), best };
-        let value = |flux: f64| design(1, [0.0; 2], flux, 0.0);
-        let [low, high] = [1.0, 1e6].map(value);
-        assert!(score(&ranking(Best::Highest), &high) < score(&ranking(Best::Highest), &low));
-        assert!(score(&ranking(Best::Lowest), &low) < score(&ranking(Best::Lowest), &high));
-        assert!(score(&ranking(Best::Lowest), &high) < 1.0);
+    fn the_best_choice_is_found_and_gets_most_of_the_designs() {
+        let colours = ["red", "green", "blue"];
+        let levels = colours.map(|own| Setting::Choice(own.to_owned())).to_vec();
+        let choice = Parameter {
+            domain: Domain::Levels(levels),
+            nominal: Setting::AsInScene,
+            ..parameter("colour", [0.0, 1.0], 0.5)
+        };
+        let mut designs = Vec::new();
+        let end = propose(&[choice, parameter("x", [0.0, 1.0], 0.5)], &plan(60, 1), |design| {
+            let [Setting::Choice(colour), Setting::Number(x)] = &design.settings[..] else {
+                panic!("{:?}", design.settings)
+            };
+            designs.push(colour.clone());
+            let least = [("red", 0.5), ("green", 0.0), ("blue", 0.2)];
+            Ok(least.iter().find(|own| own.0 == colour).unwrap().1 + (x - 0.3).powi(2))
+        });
+        assert!(matches!(end, Ok(ProposalEnd::Complete(60))));
+        // Three laps of 20 designs: of 6, 10 and 20 each, as far as they divide.
+        let of = |colour: &str| designs.iter().filter(|own| *own == colour).count();
+        assert_eq!(colours.map(of), [6, 38, 16]);
     }
 }

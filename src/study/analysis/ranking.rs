@@ -1,7 +1,7 @@
 //! Which design is the best, and with what certainty.
 
 use crate::study::analysis::combine::{Term, combine};
-use crate::study::search::score;
+use crate::study::score::score;
 use lumiduct_input::Best;
 use lumiduct_report::study::{DesignRecord, Ranked, StudyFacts};
 

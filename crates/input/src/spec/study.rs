@@ -52,7 +52,7 @@ pub(crate) struct StudySpec {
 }
 
 /// A quantity that is varied. `grid` and `one_at_a_time` need `values`, `range` or `choices`; `latin_hypercube` and `sobol`
-/// take any of the four; `tolerance` needs `spread` or `choices`; `search` needs `range`, or `tolerance` for what it leaves as in the scene; `list`
+/// take any of the four; `tolerance` needs `spread` or `choices`; `search` needs `range` or `choices`, or `tolerance` for what it leaves as in the scene; `list`
 /// takes values from its file, and here only `choices`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct ParameterSpec {
@@ -191,7 +191,7 @@ pub(crate) enum PlanSpec {
 }
 
 /// A search for the best design: Nelder and Mead's simplex within the ranges, restarted where it has converged. It begins at the
-/// values of the scene. What is best is set by `ranking` or by `cost`.
+/// values of the scene; combinations of `choices` race each other. What is best is set by `ranking` or by `cost`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SearchPlan {
     /// Most designs to trace.

@@ -114,7 +114,7 @@ fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Prob
         }
         PlanSpec::Sobol(_) => ("sobol", &["values", "range", "choices", "spread"]),
         PlanSpec::Tolerance(_) => ("tolerance", &["choices", "spread"]),
-        PlanSpec::Search(_) => ("search", &["range"]),
+        PlanSpec::Search(_) => ("search", &["range", "choices"]),
         PlanSpec::List(_) => ("list", &["choices"]),
     };
     let needs = format!("the plan `{plan}` takes one of `{}`", taken.join("`, `"));

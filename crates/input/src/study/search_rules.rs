@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use crate::problems::{Problems, name_hint};
-use crate::spec::study::{ParameterSpec, PlanSpec, StudySpec, Tolerance};
+use crate::spec::study::{ParameterSpec, PlanSpec, SearchPlan, StudySpec, Tolerance};
 use crate::study::cost::Cost;
 use crate::study::parameters::{Domain, Parameter};
 
@@ -42,6 +42,9 @@ pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
     for name in plan.cost.keys() {
         let (key, names) = (key.field("cost").field(name), spec.parameters.keys());
         match spec.parameters.get(name) {
+            Some(own) if own.choices.is_some() => {
+                problems.error(&key, "its choices are no numbers").hint("leave it out");
+            }
             Some(own) if own.range.is_none() => {
                 problems.error(&key, "the search does not change it").hint("leave it out");
             }
@@ -52,13 +55,28 @@ pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
             }
         }
     }
-    if !spec.parameters.is_empty()
-        && spec.parameters.values().all(|own| own.range.is_none() && own.tolerance.is_some())
-    {
-        problems.error(
-            &Key::of(&["parameters"]),
-            "there is nothing to search: no parameter has a `range`",
-        );
+    let ranges = spec.parameters.values().filter(|own| own.range.is_some()).count();
+    let is_complete = |own: &ParameterSpec| own.tolerance.is_some() || own.choices.is_some();
+    if !spec.parameters.is_empty() && ranges == 0 && spec.parameters.values().all(is_complete) {
+        let key = Key::of(&["parameters"]);
+        problems
+            .error(&key, "there is nothing to search: no parameter has a `range`")
+            .hint("the plan `grid` tries every choice");
+    }
+    check_race(spec, (plan, ranges), problems);
+}
+
+/// Notes a search with too few designs to compare its choices.
+fn check_race(spec: &StudySpec, (plan, ranges): (&SearchPlan, usize), problems: &mut Problems) {
+    let counts = spec.parameters.values().filter_map(|own| Some(own.choices.as_ref()?.len()));
+    let combinations = counts.fold(1_usize, usize::saturating_mul);
+    // A simplex of each, and a design more.
+    let least = combinations.saturating_mul(ranges + 2);
+    if combinations > 1 && least > plan.designs as usize {
+        let message = format!("too few for {combinations} combinations of choices");
+        problems
+            .error(&Key::of(&["plan", "search", "designs"]), message)
+            .hint(format!("give {least} or more, or fewer choices"));
     }
 }
 
@@ -72,6 +90,9 @@ pub(super) fn check_tolerance(
     let Some(Tolerance::PlusMinus(most) | Tolerance::StdDev(most)) = spec.tolerance else { return };
     let key = key.field("tolerance");
     match plan {
+        PlanSpec::Search(_) if spec.choices.is_some() => {
+            problems.error(&key, "a choice does not scatter").hint("leave it out");
+        }
         PlanSpec::Search(_) if spec.whole => {
             problems.error(&key, "a whole number does not scatter").hint("leave one of them out");
         }

@@ -131,7 +131,7 @@ impl Context<'_> {
         self.coefficients(rows, &key, "expected 0 or more: media do not amplify light")
     }
 
-    /// A table of coefficients, 1/mm, none of which is negative, for the reason of a hint.
+    /// A table of coefficients, 1/mm, with a hint for the error where one is negative.
     pub(super) fn coefficients(
         &mut self,
         rows: Vec<[f64; 2]>,

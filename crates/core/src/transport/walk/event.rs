@@ -72,7 +72,7 @@ pub struct Conversion {
     pub medium: MediumId,
     /// Throughput before it.
     pub absorbed: f64,
-    /// Throughput after it: luminous flux, of which there may be more.
+    /// Throughput after it: luminous flux, which may be larger than before.
     pub emitted: f64,
     /// Radiant flux that becomes heat, over luminous flux at throughput 1, W/lm.
     pub heat: f64,

@@ -137,11 +137,16 @@ pub(super) fn duct() -> Scene {
 
 /// Such a duct whose walls are faces of their own, of mirrors that differ.
 pub(super) fn duct_of_faces() -> Scene {
+    let [a, b, c, d, ..] = rectangle([1.5 * RADIUS, 1.1 * RADIUS], true);
+    of_faces(&[(a, 0.9), (b, 0.97), (c, 1.0), (d, 0.95)])
+}
+
+/// Walls that are faces of their own, each of a mirror of its reflectance.
+fn of_faces(walls: &[(Shape, f64)]) -> Scene {
     let mut builder = builder(0.0);
-    let walls = rectangle([1.5 * RADIUS, 1.1 * RADIUS], true).into_iter();
-    for (wall, reflectance) in walls.zip([0.9, 0.97, 1.0, 0.95]) {
-        let mirror = Finish::Specular { reflectance, transmittance: 0.0 };
-        add(&mut builder, Owner::Sheet, Some(mirror), wall);
+    for (wall, reflectance) in walls {
+        let mirror = Finish::Specular { reflectance: *reflectance, transmittance: 0.0 };
+        add(&mut builder, Owner::Sheet, Some(mirror), wall.clone());
     }
     builder.build()
 }
@@ -197,12 +202,8 @@ pub(super) fn mirror_prism() -> Scene {
 
 /// Such a tube whose walls are faces of their own, of mirrors that differ.
 pub(super) fn mirror_prism_of_faces() -> Scene {
-    let mut builder = builder(0.0);
-    for (wall, reflectance) in prism_walls().into_iter().zip([0.9, 0.97, 1.0, 0.95, 0.99]) {
-        let mirror = Finish::Specular { reflectance, transmittance: 0.0 };
-        add(&mut builder, Owner::Sheet, Some(mirror), wall);
-    }
-    builder.build()
+    let [a, b, c, d, e] = prism_walls();
+    of_faces(&[(a, 0.9), (b, 0.97), (c, 1.0), (d, 0.95), (e, 0.99)])
 }
 
 /// A rod over a polygon, of an absorbing medium.

@@ -1,5 +1,5 @@
-//! Combinations of choices that race for the designs of a search: in every lap each has as many, and the better half goes on (sequential
-//! halving: Karnin, Koren & Somekh, ICML (2013) 1238).
+//! Combinations of choices that race for the designs of a search: in every lap each has as many, and the better half goes on, with those that
+//! equal it (sequential halving: Karnin, Koren & Somekh, ICML (2013) 1238).
 
 use lumiduct_input::{Domain, Parameter, Setting};
 
@@ -52,47 +52,51 @@ pub(crate) struct ScoredDesign {
 /// The race.
 pub(crate) struct Race {
     combinations: Vec<ChoiceSet>,
-    /// Those that still run.
+    /// Those that still run, the best first.
     running: Vec<usize>,
     laps_left: usize,
     /// Designs of all combinations in the whole race.
     most: usize,
+    /// Designs of each combination in the first lap, at least.
+    first: usize,
     /// Designs that each of those that run may have had up to now.
     designs: usize,
 }
 
-/// A lap of the race.
-pub(crate) struct Lap {
-    /// The combinations that run it.
-    pub(crate) entrants: Vec<usize>,
-    /// Most designs of each of them, earlier laps included.
-    pub(crate) designs: usize,
-}
-
 impl Race {
-    /// A race for a number of designs.
-    pub(crate) fn new(parameters: &[Parameter], most: usize) -> Self {
-        let combinations = ChoiceSet::all(parameters);
+    /// A race for a number of designs, in which each combination has at least a `first` number.
+    pub(crate) fn new(parameters: &[Parameter], most: usize, first: usize) -> Self {
+        Self::of(ChoiceSet::all(parameters), most, first)
+    }
+
+    fn of(combinations: Vec<ChoiceSet>, most: usize, first: usize) -> Self {
         let running: Vec<usize> = (0..combinations.len()).collect();
         // Until a single one runs, and a lap for that.
         let laps_left = 1 + running.len().next_power_of_two().ilog2() as usize;
-        Self { combinations, running, laps_left, most, designs: 0 }
+        Self { combinations, running, laps_left, most, first, designs: 0 }
     }
 
     pub(crate) fn combination(&self, number: usize) -> &ChoiceSet {
         &self.combinations[number]
     }
 
-    /// The next lap after a number of designs of all combinations: laps share what is left equally; `None` at the end.
-    pub(crate) fn next_lap(&mut self, used: usize) -> Option<Lap> {
+    /// The combinations of the next lap, each with the most designs that it may have had after it, where `used` are designs of all
+    /// combinations: laps share what is left equally. `None` at the end.
+    pub(crate) fn next_lap(&mut self, used: usize) -> Option<Vec<(usize, usize)>> {
         if self.laps_left == 0 {
             return None;
         }
-        self.designs += self.most.saturating_sub(used) / (self.laps_left * self.running.len());
-        Some(Lap { entrants: self.running.clone(), designs: self.designs })
+        let left = self.most.saturating_sub(used);
+        let share = left / (self.laps_left * self.running.len());
+        self.designs = (self.designs + share).max(self.first);
+        // What equal shares leave at the end is for the best.
+        let extra = if self.laps_left == 1 { left - share * self.running.len() } else { 0 };
+        let most = |place: usize| self.designs + usize::from(place < extra);
+        Some(self.running.iter().enumerate().map(|(place, own)| (*own, most(place))).collect())
     }
 
-    /// Ends a lap with all designs so far: the half of the combinations with the lowest scores goes on.
+    /// Ends a lap with all designs so far: the half of the combinations with the lowest scores goes on, and any that equal the last
+    /// of them. Early designs often do, as where the first steps of all combinations pass and cost the same.
     pub(crate) fn end_lap(&mut self, known: &[ScoredDesign]) {
         let best = |number: &usize| {
             let own = known.iter().filter(|own| self.combinations[*number].is_of(&own.settings));
@@ -102,8 +106,56 @@ impl Race {
             self.running.iter().map(|number| (best(number), *number)).collect();
         // Equal ones stay in their order.
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ranked.truncate(ranked.len().div_ceil(2));
+        let half = ranked.len().div_ceil(2);
+        let last = ranked[half - 1].0;
+        let ties = ranked[half..].iter().take_while(|(score, _)| *score == last).count();
+        ranked.truncate(half + ties);
         self.running = ranked.into_iter().map(|(_, number)| number).collect();
         self.laps_left -= 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Designs of each combination after a race, if every design of a combination has the same score.
+    fn raced(scores: &[f64], most: usize, first: usize) -> Vec<usize> {
+        let combination =
+            |number: usize| ChoiceSet { settings: vec![(0, Setting::Number(number as f64))] };
+        let mut race = Race::of((0..scores.len()).map(combination).collect(), most, first);
+        let (mut known, mut had) = (Vec::new(), vec![0; scores.len()]);
+        while let Some(lap) = race.next_lap(known.len()) {
+            for (number, most) in lap {
+                for _ in had[number]..most {
+                    let settings = vec![Setting::Number(number as f64)];
+                    known.push(ScoredDesign { settings, score: scores[number] });
+                }
+                had[number] = had[number].max(most);
+            }
+            race.end_lap(&known);
+        }
+        had
+    }
+
+    #[test]
+    fn the_better_half_of_combinations_goes_on_with_those_that_equal_it() {
+        assert_eq!(raced(&[0.4, 0.1, 0.3, 0.2], 80, 2), [6, 48, 6, 20]);
+        assert_eq!(raced(&[0.1, 0.3, 0.3, 0.4], 80, 2), [25, 25, 24, 6]);
+        assert_eq!(raced(&[0.2; 4], 83, 2), [21, 21, 21, 20]);
+        assert_eq!(raced(&[f64::INFINITY; 2], 10, 2), [5, 5]);
+        assert_eq!(raced(&[0.7], 9, 2), [9]);
+    }
+
+    #[test]
+    fn every_combination_has_a_simplex_before_one_is_dropped() {
+        // The fewest designs that a study may give: those of a simplex and one more for each combination.
+        for combinations in [2, 3, 5, 8, 14, 32] {
+            let scores: Vec<f64> = (0..combinations).map(f64::from).collect();
+            let most = combinations as usize * 3;
+            let had = raced(&scores, most, 2);
+            assert!(had.iter().all(|own| *own >= 2), "{had:?}");
+            assert_eq!(had.iter().sum::<usize>(), most, "{had:?}");
+        }
     }
 }

@@ -91,15 +91,16 @@ fn propose(
     let most = plan.designs as usize;
     let (measured, known) = (RefCell::new(measured), RefCell::new(Vec::new()));
     let searched = parameters.iter().filter(|own| is_searched(own)).count();
-    let mut race = Race::new(parameters, most);
+    // A simplex has a design more than there are ranges.
+    let mut race = Race::new(parameters, most, searched + 1);
     loop {
         let designs = known.borrow().len();
         let Some(lap) = race.next_lap(designs) else { return Ok(ProposalEnd::Complete(designs)) };
-        for entrant in lap.entrants {
+        for (entrant, most) in lap {
             let proposed = Proposed {
                 parameters,
                 combination: race.combination(entrant),
-                most: lap.designs,
+                most,
                 sides: [0.0, 1.0].map(|side| vec![side; searched]),
                 measured: &measured,
                 known: &known,

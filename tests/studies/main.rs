@@ -9,10 +9,10 @@ mod searches;
 #[path = "../skip/mod.rs"]
 mod skip;
 
-use crate::searches::search;
+use crate::searches::stopped_when;
 use lumiduct::study::{BatchOptions, OnExisting, run_study};
 use lumiduct_core::transport::{Interrupt, Shard};
-use lumiduct_input::{Plan, Study, StudySettings, load_study};
+use lumiduct_input::{Plan, StudySettings, load_study};
 use lumiduct_report::study::{DesignRecord, Pairing};
 use serde_json::Value;
 use std::fs;
@@ -73,7 +73,7 @@ fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
     for path in studies() {
         let study = load_study(&path, &StudySettings::default()).unwrap();
         if matches!(study.plan, Plan::Search(_)) {
-            begin_again(&path, &study);
+            begin_again(&path);
             continue;
         }
         let manifest = json(&results(&path).join("batch.json"));
@@ -100,20 +100,14 @@ fn record(folder: &Path, design: u64) -> DesignRecord {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
 }
 
-/// Traces the first designs of a search again: one of fewer designs begins with the same.
-fn begin_again(path: &Path, study: &Study) {
-    const DESIGNS: u64 = 4;
+/// Traces the first designs of a search again.
+fn begin_again(path: &Path) {
+    const DESIGNS: usize = 4;
     let folder = tempfile::tempdir().unwrap();
-    let mut text: toml::Table = study.text.parse().unwrap();
-    text["scene"] = fs::canonicalize(&study.scene).unwrap().to_str().unwrap().into();
-    text["plan"]["search"]["designs"] = (DESIGNS as i64).into();
-    let copy = folder.path().join("first.toml");
-    fs::write(&copy, text.to_string()).unwrap();
-    let found = search(&copy, &folder.path().join("out"), OnExisting::Keep);
-    assert_eq!(found.designs.len() as u64, DESIGNS);
-    for design in &found.designs {
-        let before = record(&results(path), design.design as u64);
-        assert_eq!((&design.settings, &design.outcome), (&before.settings, &before.outcome));
+    stopped_when(path, folder.path(), |progress| progress.done == DESIGNS);
+    for number in 1..=DESIGNS as u64 {
+        let [again, before] = [folder.path(), &results(path)].map(|dir| record(dir, number));
+        assert_eq!((&again.settings, &again.outcome), (&before.settings, &before.outcome));
     }
 }
 

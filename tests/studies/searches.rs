@@ -127,7 +127,7 @@ fn a_design_that_fails_when_traced_again_is_not_good() {
 }
 
 /// A search that the user stops as soon as its progress is this.
-fn stopped_when(
+pub(crate) fn stopped_when(
     path: &Path,
     out: &Path,
     is_reached: impl Fn(&BatchProgress) -> bool + Sync,
@@ -220,13 +220,22 @@ fn a_search_finds_the_clearer_of_two_media_and_goes_on_where_it_was_stopped() {
     assert!((length - 2_f64.ln() / 0.05).abs() < 0.05, "{length}");
     let scene = fs::read_to_string(out.join("dye_best.toml")).unwrap();
     assert!(scene.contains("medium = \"dye\""), "{scene}");
-    // Without the records of its last designs it traces these again, to the same bytes.
+    let page = fs::read_to_string(out.join("study.md")).unwrap();
+    let (_, table) = page.split_once("## Best of each combination of choices").unwrap();
+    let rows = table.lines().filter(|line| line.starts_with("| ")).skip(2).take(2);
+    let cells = |row: &str| -> Vec<String> { row.split(" | ").map(str::to_owned).collect() };
+    let found_rows: Vec<_> = rows.map(cells).collect();
+    assert!(found_rows[0][0].contains("clear") && found_rows[0][5].starts_with("30 "), "{page}");
+    assert!(found_rows[1][0].contains("dark") && found_rows[1][5].starts_with("10 "), "{page}");
+    // Without the records of later designs it traces these again, to the same bytes: in the first lap, at its end, after it.
     let before = fs::read(out.join("study.csv")).unwrap();
-    for number in 30..=found.designs.len() {
-        fs::remove_file(out.join(format!("designs/{number:04}.json"))).unwrap();
+    for first in [5, 21, 30] {
+        for number in first..=found.designs.len() {
+            fs::remove_file(out.join(format!("designs/{number:04}.json"))).unwrap();
+        }
+        search(&path, &out, OnExisting::Resume);
+        assert_eq!(fs::read(out.join("study.csv")).unwrap(), before);
     }
-    search(&path, &out, OnExisting::Resume);
-    assert_eq!(fs::read(out.join("study.csv")).unwrap(), before);
 }
 
 fn expect_refusal(text: &str, words: &str) {

@@ -1,17 +1,18 @@
 //! The contents of the report of a study, part by part, for any page format.
 
 use crate::page::{Block, PagePart, table};
+use crate::study::choices::best_of_choices;
 use crate::study::confirmation::{standing, traced_again};
 use crate::study::edge::edge_remark;
 use crate::study::sampled::{expected_failures, failures, produced, sensitivities};
-use crate::study::settings::{domain_words, setting_word};
+use crate::study::settings::{domain_words, setting_word, settings};
 use crate::study::{
     DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, StudyReport, ValueWithError,
 };
 use crate::words::{measured, outcome_word};
 use lumiduct_base::number::{format_value, format_with_error};
 use lumiduct_core::measure::CheckOutcome;
-use lumiduct_input::{Best, Setting};
+use lumiduct_input::Best;
 use std::fmt::Write;
 
 /// Errors of a difference above which a design counts as behind the best, 1.
@@ -22,6 +23,7 @@ const BEHIND_ERRORS: f64 = 3.0;
 pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
     let mut before: Vec<PagePart> = [
         failures(report),
+        best_of_choices(report),
         ranking(report),
         traced_again(report),
         produced(report),
@@ -91,7 +93,7 @@ fn ranking(report: &StudyReport) -> Option<PagePart> {
     let head: Vec<String> =
         head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
     let rows = report.analysis.ranked.iter().enumerate().filter_map(|(place, own)| {
-        let design = report.designs.iter().find(|design| design.design == own.design)?;
+        let design = report.design(own.design)?;
         let value = design.measure(&ranking.measure).map_or(String::new(), measured);
         let behind = own.behind.map_or("the best".into(), |behind| difference(&behind));
         let row = [(place + 1).to_string(), own.design.to_string()].into_iter();
@@ -166,22 +168,6 @@ fn designs(report: &StudyReport) -> PagePart {
     };
     let rows = report.designs.iter().map(row).collect();
     PagePart::new("Designs", vec![table(&head.collect::<Vec<_>>(), rows)])
-}
-
-/// The settings of a design as cells of a table.
-fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
-    report.facts.varied().map(|parameter| setting(parameter, design)).collect()
-}
-
-/// What a parameter is set to in a design, without its unit.
-fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
-    let found = parameter.setting_in(design);
-    let of_scene =
-        if design.settings.get(&parameter.name) == Some(found) { "" } else { " (scene)" };
-    match found {
-        Setting::Number(_) => setting_word(found) + of_scene,
-        Setting::Choice(_) | Setting::AsInScene => setting_word(found),
-    }
 }
 
 fn parameters(report: &StudyReport) -> PagePart {

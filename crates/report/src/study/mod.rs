@@ -1,6 +1,7 @@
 //! The output of a study: one record, and pure functions that turn it into files.
 
 mod analysis;
+mod choices;
 mod confirmation;
 mod contents;
 mod edge;

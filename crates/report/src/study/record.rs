@@ -285,9 +285,13 @@ impl StudyReport {
         if !self.facts.plan.is_search() {
             return None;
         }
-        let best = self.analysis.ranked.first()?.design;
-        let best = self.designs.iter().find(|design| design.design == best)?;
+        let best = self.design(self.analysis.ranked.first()?.design)?;
         best.passes().then_some(best)
+    }
+
+    /// The design of a number.
+    pub(crate) fn design(&self, number: usize) -> Option<&DesignRecord> {
+        self.designs.iter().find(|design| design.design == number)
     }
 
     /// Whether every design is as requested or, of a search, one is found and not refuted.

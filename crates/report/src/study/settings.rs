@@ -1,5 +1,6 @@
 //! Settings and domains of parameters in words.
 
+use crate::study::{DesignRecord, ParameterFacts, StudyReport};
 use lumiduct_base::number::format_value;
 use lumiduct_input::{Domain, Setting};
 use std::fmt::Write;
@@ -33,5 +34,21 @@ pub(super) fn domain_words(domain: &Domain) -> String {
         }
         Domain::Listed => "from the table".into(),
         Domain::AsInScene => "as in the scene".into(),
+    }
+}
+
+/// The settings of a design as cells of a table.
+pub(super) fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
+    report.facts.varied().map(|parameter| setting(parameter, design)).collect()
+}
+
+/// What a parameter is set to in a design, without its unit.
+pub(super) fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+    let found = parameter.setting_in(design);
+    let of_scene =
+        if design.settings.get(&parameter.name) == Some(found) { "" } else { " (scene)" };
+    match found {
+        Setting::Number(_) => setting_word(found) + of_scene,
+        Setting::Choice(_) | Setting::AsInScene => setting_word(found),
     }
 }

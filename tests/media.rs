@@ -213,6 +213,18 @@ fn a_file_of_scattering_means_the_same_as_its_rows() {
 }
 
 #[test]
+fn a_medium_that_scatters_by_0_is_clear() {
+    let scattering =
+        "scattering = { per_mm = { by_nm = [[450, 0.4], [650, 0.1]] }, anisotropy = 0.3 }\n";
+    let turbid = slab("radius_mm = 4", "far = { goniometer = {} }");
+    let zero = "scattering = { per_mm = 0, anisotropy = 0.3 }\n";
+    let [clear, by_0] = ["", zero].map(|instead| turbid.replace(scattering, instead));
+    assert!(clear != turbid && by_0 != turbid);
+    let [clear, by_0] = [clear, by_0].map(|text| measures(&text, 20_000).values);
+    assert_eq!(clear, by_0);
+}
+
+#[test]
 fn the_error_of_a_dark_sensor_allows_for_light_that_gains_by_conversion() {
     let dark = "dark = { plane = { disk = { radius_mm = 20 } }, at = { position_mm = [0, 0, -50], axis = [0, 0, -1] }, side = \"front\" }\n";
     let with_dye = format!("{BALL}{dark}");

@@ -119,6 +119,20 @@ fn samples_tell_the_share_that_fails_and_what_it_hangs_on() {
 }
 
 #[test]
+fn a_choice_that_makes_no_scene_is_named_with_its_line() {
+    let misspelt = "choices = { acrylic = \"acrylic\", dense = \"acrylc\" }";
+    let text = STUDY
+        .replace("media.acrylic.index", "solids.rod.cylinder.medium")
+        .replace("range = { from = 1.4, to = 1.6, count = 2 }", misspelt);
+    let place = study(&text);
+    let output = place.run("batch study.toml -o out");
+    assert_eq!(code(&output), 1);
+    let said = String::from_utf8(output.stderr).unwrap();
+    let words = ["study.toml:13", "unknown medium `acrylc`", "did you mean `acrylic`"];
+    assert!(words.iter().all(|word| said.contains(word)), "{said}");
+}
+
+#[test]
 fn tables_choices_and_whole_reports() {
     let text = STUDY
         .replace(

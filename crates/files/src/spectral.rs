@@ -101,8 +101,11 @@ pub fn parse(bytes: &[u8], column: SpectralColumn<'_>) -> Result<SpectralValues,
     let place = match column {
         SpectralColumn::Named(wanted) => {
             let place = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
-            let missing =
-                || wrong(head_line, format!("there is no column `{}`", wanted.join("` or `")));
+            let missing = || {
+                let (wanted, found) =
+                    (wanted.join("` or `"), names.join("`, `").escape_debug().to_string());
+                wrong(head_line, format!("there is no column `{wanted}`; found: `{found}`"))
+            };
             wanted.iter().find_map(|name| place(name)).ok_or_else(missing)?
         }
         SpectralColumn::Second => 1,
@@ -171,7 +174,7 @@ mod tests {
         for (text, part) in [
             ("", "line 1: the file is empty"),
             ("wavelength,n\n", "line 1: the first column is `wavelength`"),
-            ("nm\n400\n", "line 1: there is no column `n`"),
+            ("nm,mu\n400,1\n", "line 1: there is no column `n`; found: `nm`, `mu`"),
             ("nm,n\n400,1.5\n", "line 1: fewer than two"),
             ("nm,n\n400,1.5\n500\n", "line 3: it has 1 columns instead of 2"),
             ("nm,n\n400,1.5\n500,x\n", "line 3: `x` is not a number"),

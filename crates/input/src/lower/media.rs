@@ -80,6 +80,7 @@ impl Context<'_> {
     ) -> Option<Turbidity> {
         let key = key.field("per_mm");
         let coefficient = match per_mm {
+            ScatteringCoefficientSpec::Constant(0.0) => return None,
             ScatteringCoefficientSpec::Constant(per_mm) => CoefficientLaw::Constant(*per_mm),
             ScatteringCoefficientSpec::Table(ScatteringTableSpec::ByNm(rows)) => {
                 self.coefficients(rows.clone(), &key.field("by_nm"), TURBID)?

@@ -64,6 +64,6 @@ impl Default for ExtinctionSpec {
 pub enum ExtinctionTableSpec {
     /// Pairs of wavelength and k, from 0 to 20, linear in between and constant beyond.
     ByNm(#[schemars(length(min = 2))] Vec<[f64; 2]>),
-    /// A CSV file with a column `nm` or `um`, the first, and a column `k`. A relative path is relative to the scene file.
+    /// A CSV file whose first column is the wavelength (`nm`, `wavelength_nm`, `lambda_nm`, `um` or `wavelength_um`), with a column `k`. A relative path is relative to the scene file.
     Csv(String),
 }

@@ -38,8 +38,8 @@ pub struct ScatteringSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ScatteringCoefficientSpec {
-    /// The same at every wavelength.
-    Constant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// The same at every wavelength; 0 in a clear medium.
+    Constant(#[schemars(range(min = 0.0))] f64),
     /// By wavelength.
     Table(ScatteringTableSpec),
 }
@@ -50,7 +50,7 @@ pub enum ScatteringCoefficientSpec {
 pub enum ScatteringTableSpec {
     /// Pairs of wavelength and coefficient, 1/mm, linear in between and constant beyond; 0 where the medium is clear.
     ByNm(#[schemars(length(min = 2))] Vec<[f64; 2]>),
-    /// A CSV file with a column `nm` or `um`, the first, and a column `scattering_per_mm`. A relative path is relative to the scene file.
+    /// A CSV file whose first column is the wavelength (`nm`, `wavelength_nm`, `lambda_nm`, `um` or `wavelength_um`), with a column `scattering_per_mm`. A relative path is relative to the scene file.
     Csv(String),
 }
 

@@ -76,7 +76,7 @@ pub enum IndexLawSpec {
     ByNm(#[schemars(length(min = 2))] Vec<[f64; 2]>),
     /// That of a medium in the library, which `lumiduct library` lists.
     Library(String),
-    /// A CSV file with a column `nm` or `um`, the first, and a column `n`. A relative path is relative to the scene file.
+    /// A CSV file whose first column is the wavelength (`nm`, `wavelength_nm`, `lambda_nm`, `um` or `wavelength_um`), with a column `n`. A relative path is relative to the scene file.
     Csv(String),
 }
 
@@ -128,7 +128,7 @@ impl Default for AbsorptionSpec {
 pub enum AbsorptionTableSpec {
     /// Pairs of wavelength and coefficient, 1/mm, linear in between and constant beyond.
     ByNm(#[schemars(length(min = 2))] Vec<[f64; 2]>),
-    /// A CSV file with a column `nm` or `um`, the first, and either a column `absorption_per_mm` or the extinction coefficient `k`, from which the
+    /// A CSV file whose first column is the wavelength (`nm`, `wavelength_nm`, `lambda_nm`, `um` or `wavelength_um`), with either a column `absorption_per_mm` or the extinction coefficient `k`, from which the
     /// absorption coefficient is 4πk/λ. A relative path is relative to the scene file.
     Csv(String),
 }

@@ -25,7 +25,7 @@ use crate::texts::argument_label;
 use crate::{Draft, Job, Settings, draft, load};
 use indexmap::IndexMap;
 use lumiduct_base::digest::Digest;
-use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use lumiduct_base::text::visible;
 use lumiduct_core::plan::{Check, NUMERICS};
 use serde::Serialize;
@@ -157,11 +157,13 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     rules::check_clock(&base, &mut problems);
     let rows = table.map(|table| list::rows(&places, table, &parameters, &mut problems));
     let plan = lower_plan(&spec.plan, rows.unwrap_or_default());
-    let warnings = problems.finish(&places)?;
     let mut hash = Digest::default();
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
     hash.add(base.hash.as_bytes());
-    add_choices(&parameters, &scene, &common, &mut hash);
+    if problems.is_free_of_errors() {
+        add_choices(&parameters, (&scene, &common), &mut hash, &mut problems);
+    }
+    let warnings = problems.finish(&places)?;
     let identity = serde_json::to_string(&(NUMERICS, &base.run, settings));
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
@@ -192,18 +194,41 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     })
 }
 
-/// Adds the scene of every choice: a choice may refer to a file that the scene alone does not.
-fn add_choices(parameters: &[Parameter], scene: &Path, common: &Settings, hash: &mut Digest) {
+/// Adds the scene of every choice: a choice may refer to a file that the scene alone does not. Notes those that make no scene.
+fn add_choices(
+    parameters: &[Parameter],
+    (scene, common): (&Path, &Settings),
+    hash: &mut Digest,
+    problems: &mut Problems,
+) {
     for parameter in parameters {
         for name in parameter.choices.keys() {
             let own = parameter.overrides(&Setting::Choice(name.clone()));
             let settings = common.with(own);
             match load(scene, &settings) {
                 Ok(job) => hash.add(job.hash.as_bytes()),
-                // With other parameters it may become valid, so its files count all the same.
-                Err(_) => add_files(scene, &settings, hash),
+                Err(error) => {
+                    // With other parameters it may become valid, so its files count all the same.
+                    add_files(scene, &settings, hash);
+                    let key = Key::of(&["parameters", &parameter.name, "choices", name]);
+                    warn_of_choice(&key, error, problems);
+                }
             }
         }
+    }
+}
+
+/// Notes why a choice makes no scene, where all else is as in the scene.
+fn warn_of_choice(key: &Key, error: Error, problems: &mut Problems) {
+    let Error::Input(found) = error else { return };
+    let is_error = |own: &Diagnostic| own.kind == DiagnosticKind::Error;
+    let Some(Diagnostic { key: at, message, hint, .. }) = found.into_iter().find(is_error) else {
+        return;
+    };
+    let message = format!("makes no valid scene, with all else as in the scene: {at}: {message}");
+    let warning = problems.warning(key, message);
+    if let Some(hint) = hint {
+        warning.hint(hint);
     }
 }
 

@@ -61,5 +61,6 @@ pub(crate) fn parameter_facts(parameter: &Parameter) -> ParameterFacts {
         keys: parameter.ties.iter().map(key).collect(),
         domain: parameter.domain.clone(),
         nominal: parameter.nominal.clone(),
+        choices: parameter.choices.clone(),
     }
 }

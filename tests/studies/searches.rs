@@ -82,8 +82,10 @@ fn a_search_finds_the_length_of_a_law_of_absorption_and_goes_on_where_it_was_sto
     let scene = fs::read_to_string(out.join("dye_best.toml")).unwrap();
     assert!(scene.contains(&format!("length_mm = {length}")), "{scene}");
     let page = fs::read_to_string(out.join("study.md")).unwrap();
-    let words = format!("the best that passes is design {}", best.design);
+    let words = format!("the best that passes is design {} (length {length:.2} mm)", best.design);
     assert!(page.contains(&words) && page.contains("history.png"), "{page}");
+    // What fails may be longer than the best, but is not ahead of it.
+    assert!(page.lines().any(|line| line.ends_with(" mm |  | failed |")), "{page}");
     let again = &whole.confirmations;
     assert_eq!(
         again.iter().map(|own| own.estimator.as_str()).collect::<Vec<_>>(),

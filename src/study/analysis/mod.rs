@@ -65,6 +65,7 @@ pub(crate) mod testing {
             keys: Vec::new(),
             domain: Domain::Listed,
             nominal: Setting::AsInScene,
+            choices: IndexMap::new(),
         };
         StudyFacts {
             lumiduct_batch: FACTS_FORMAT,

@@ -5,7 +5,7 @@ use crate::study::choices::best_of_choices;
 use crate::study::confirmation::{standing, traced_again};
 use crate::study::edge::edge_remark;
 use crate::study::sampled::{expected_failures, failures, produced, sensitivities};
-use crate::study::settings::{domain_words, setting_word, settings};
+use crate::study::settings::{domain_words, setting_word, settings, settings_words};
 use crate::study::{
     DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, StudyReport, ValueWithError,
 };
@@ -66,7 +66,12 @@ pub(super) fn verdict(report: &StudyReport) -> String {
     match report.best_passing() {
         Some(best) => {
             let again = standing(best, &report.confirmations);
-            _ = write!(text, "; the best that passes is design {}{again}", best.design);
+            let settings = settings_words(report, best);
+            _ = write!(
+                text,
+                "; the best that passes is design {} ({settings}){again}",
+                best.design
+            );
             text += &expected_failures(report);
         }
         None if report.facts.plan.is_search() => {
@@ -90,14 +95,24 @@ fn ranking(report: &StudyReport) -> Option<PagePart> {
     );
     let labels = report.facts.varied().map(ParameterFacts::label);
     let head = ["place".to_owned(), "design".to_owned()].into_iter().chain(labels);
-    let head: Vec<String> =
-        head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
+    let has_checks = !report.facts.checks.is_empty();
+    let checks = has_checks.then(|| "checks".to_owned());
+    let head = head.chain([ranking.measure.clone(), "behind the best".to_owned()]).chain(checks);
+    let head: Vec<String> = head.collect();
     let rows = report.analysis.ranked.iter().enumerate().filter_map(|(place, own)| {
         let design = report.design(own.design)?;
         let value = design.measure(&ranking.measure).map_or(String::new(), measured);
-        let behind = own.behind.map_or("the best".into(), |behind| difference(&behind));
+        // Of a search, what does not pass may have a better value than the best.
+        let is_beside = report.best_passing().is_some() && !design.passes();
+        let behind = match &own.behind {
+            None => "the best".to_owned(),
+            Some(_) if is_beside => String::new(),
+            Some(behind) => difference(behind),
+        };
+        let verdict = design.outcome.verdict().map_or("", outcome_word).to_owned();
         let row = [(place + 1).to_string(), own.design.to_string()].into_iter();
-        Some(row.chain(settings(report, design)).chain([value, behind]).collect())
+        let row = row.chain(settings(report, design)).chain([value, behind]);
+        Some(row.chain(has_checks.then_some(verdict)).collect())
     });
     let mut blocks = vec![Block::Words { text: words }, table(&head, rows.collect())];
     let last = "Designs that fail a check come last, by their shortfall.";
@@ -172,8 +187,14 @@ fn designs(report: &StudyReport) -> PagePart {
 
 fn parameters(report: &StudyReport) -> PagePart {
     let head = ["parameter", "values", "keys of the scene"];
-    let row =
-        |own: &ParameterFacts| vec![own.label(), domain_words(&own.domain), own.keys.join(", ")];
+    let row = |own: &ParameterFacts| {
+        let choices = own.choices.iter().map(|(name, value)| format!("{name}: {value}"));
+        let values = match own.choices.is_empty() {
+            true => domain_words(&own.domain),
+            false => choices.collect::<Vec<_>>().join("; "),
+        };
+        vec![own.label(), values, own.keys.join(", ")]
+    };
     let rows = report.facts.parameters.iter().map(row).collect();
     PagePart::new("Parameters", vec![table(&head, rows)])
 }

@@ -89,6 +89,7 @@ mod tests {
             keys: Vec::new(),
             domain,
             nominal: Setting::AsInScene,
+            choices: indexmap::IndexMap::new(),
         };
         let all = designs(lengths);
         edge(&parameter, &all[best], &all)

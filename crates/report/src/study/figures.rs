@@ -176,9 +176,10 @@ fn history(report: &StudyReport) -> Option<Figure> {
     let end = report.designs.len() as f64;
     lead.extend(lead.last().copied().map(|last| SeriesPoint { x: end, ..last }));
     let series = [
+        // In the colours of the scatter matrix.
+        ("passes all checks", good, SeriesForm::Dots, ErrorForm::Bars),
+        ("fails or undecided", bad, SeriesForm::Dots, ErrorForm::Bars),
         ("best so far", lead, SeriesForm::Line, ErrorForm::Hidden),
-        ("designs that pass", good, SeriesForm::Dots, ErrorForm::Bars),
-        ("others", bad, SeriesForm::Dots, ErrorForm::Bars),
     ];
     let series = series.into_iter().filter(|(_, points, ..)| !points.is_empty());
     let plot = LinePlot {

@@ -135,6 +135,9 @@ pub struct ParameterFacts {
     pub domain: Domain,
     /// Its value in the scene.
     pub nominal: Setting,
+    /// What its choices stand for, as TOML.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub choices: IndexMap<String, String>,
 }
 
 impl ParameterFacts {

@@ -42,6 +42,16 @@ pub(super) fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<Strin
     report.facts.varied().map(|parameter| setting(parameter, design)).collect()
 }
 
+/// The settings of a design in words, with units.
+pub(super) fn settings_words(report: &StudyReport, design: &DesignRecord) -> String {
+    let word = |own: &ParameterFacts| {
+        let unit = own.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+        let unit = if own.setting_in(design).number().is_some() { unit } else { String::new() };
+        format!("{} {}{unit}", own.name, setting(own, design))
+    };
+    report.facts.varied().map(word).collect::<Vec<_>>().join(", ")
+}
+
 /// What a parameter is set to in a design, without its unit.
 pub(super) fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let found = parameter.setting_in(design);

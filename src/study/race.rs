@@ -73,6 +73,7 @@ impl Race {
         let running: Vec<usize> = (0..combinations.len()).collect();
         // Until a single one runs, and a lap for that.
         let laps_left = 1 + running.len().next_power_of_two().ilog2() as usize;
+        let first = first.min(most / running.len());
         Self { combinations, running, laps_left, most, first, designs: 0 }
     }
 
@@ -145,6 +146,7 @@ mod tests {
         assert_eq!(raced(&[0.2; 4], 83, 2), [21, 21, 21, 20]);
         assert_eq!(raced(&[f64::INFINITY; 2], 10, 2), [5, 5]);
         assert_eq!(raced(&[0.7], 9, 2), [9]);
+        assert_eq!(raced(&[0.7], 4, 5), [4], "never more than it may trace");
     }
 
     #[test]

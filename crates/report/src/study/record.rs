@@ -135,7 +135,7 @@ pub struct ParameterFacts {
     pub domain: Domain,
     /// Its value in the scene.
     pub nominal: Setting,
-    /// What its choices stand for, as TOML.
+    /// The value behind each name of a choice, as TOML.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub choices: IndexMap<String, String>,
 }

@@ -15,17 +15,19 @@ use crate::transport::window::Window;
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
 use std::ops::Range;
+use wide::f32x8;
 
-/// Size of the cells of position in radii, and of direction in chords of the angle: a record is in
-/// about eight cells. The cost of a look-up is memory latency, so smaller tables beat sharper ones:
-/// docs/method.md.
-const POSITION_CELL: f64 = 4.0;
-const DIRECTION_CELL: f64 = 2.5;
+/// Size of the cells of position in radii, and of direction in chords of the angle. The cost of a look-up is memory, so smaller
+/// tables beat sharper ones: docs/method.md.
+const POSITION_CELL: f64 = 8.0;
+const DIRECTION_CELL: f64 = 4.0;
 /// Photons that are looked up together: enough to overlap memory latency, few enough to stay in
 /// cache, and no more than a word has bits.
 pub(crate) const TOGETHER: usize = 64;
+/// Entries that are compared with a photon together.
+const BLOCK: usize = 8;
 /// Bits of the filter for each entry of an index.
-const FILTER_BITS: usize = 8;
+const FILTER_BITS: usize = 4;
 /// Single-precision error in the distance of two points, relative to their coordinates: a few units
 /// of 2^-24 each.
 const SINGLE_ROUNDING: f64 = 1e-6;
@@ -66,7 +68,7 @@ pub(crate) struct Index {
     mask: u64,
     /// Start of the entries of each bucket; one more at the end.
     starts: Vec<u32>,
-    entries: Vec<IndexEntry>,
+    entries: Vec<EntryBlock>,
     /// Squares of the largest distances, with room for rounding, between a photon and a record:
     /// points, mm², and directions.
     point_reach_squared: f32,
@@ -83,6 +85,47 @@ struct IndexEntry {
     /// records need not be fetched.
     point: [f32; 3],
     dir: [f32; 3],
+}
+
+/// Entries next to each other, which are compared with a photon together.
+#[derive(Debug, Clone, Copy, Default)]
+struct EntryBlock {
+    record: [u32; BLOCK],
+    tag: [u32; BLOCK],
+    point: [[f32; BLOCK]; 3],
+    dir: [[f32; BLOCK]; 3],
+}
+
+impl EntryBlock {
+    fn set(&mut self, lane: usize, entry: &IndexEntry) {
+        self.record[lane] = entry.record;
+        self.tag[lane] = entry.tag;
+        for axis in 0..3 {
+            self.point[axis][lane] = entry.point[axis];
+            self.dir[axis][lane] = entry.dir[axis];
+        }
+    }
+
+    /// The entries within both reaches of a photon, one bit each.
+    #[inline(always)]
+    fn near(&self, (point, dir): (Vec3, Vec3), [point_reach, dir_reach]: [f32; 2]) -> u32 {
+        let distance_squared = |from: &[[f32; BLOCK]; 3], to: Vec3| {
+            let [x, y, z] = [(0, to.x), (1, to.y), (2, to.z)]
+                .map(|(axis, to)| f32x8::new(from[axis]) - f32x8::splat(to));
+            x * x + y * y + z * z
+        };
+        let near_dir = distance_squared(&self.dir, dir).simd_le(f32x8::splat(dir_reach));
+        let near_point = distance_squared(&self.point, point).simd_le(f32x8::splat(point_reach));
+        (near_dir & near_point).to_bitmask()
+    }
+}
+
+/// The entries of a block that belong to a range.
+#[inline]
+fn lanes_within(range: &Range<usize>, block: usize) -> u32 {
+    let lanes_from =
+        |place: usize| u32::MAX.checked_shl(place.saturating_sub(BLOCK * block) as u32);
+    lanes_from(range.start).unwrap_or(0) & !lanes_from(range.end).unwrap_or(0)
 }
 
 impl Index {
@@ -111,7 +154,7 @@ impl Index {
                 return None;
             }
         }
-        let mask = placed.len().next_power_of_two() as u64 - 1;
+        let mask = placed.len().div_ceil(BLOCK).next_power_of_two() as u64 - 1;
         let filter = Filter::new(&placed, pace)?;
         let (starts, entries) = sorted(placed, mask, pace)?;
         let reach = ball(window);
@@ -147,21 +190,28 @@ impl Index {
             (tag(hash), self.starts[place] as usize..self.starts[place + 1] as usize)
         });
         let buckets: SmallVec<[(u32, Range<usize>); TOGETHER]> = keyed.collect();
-        let first = |(_, bucket): &(u32, Range<usize>)| {
-            self.entries[bucket.clone()].first().copied().unwrap_or_default()
+        let blocks = |bucket: &Range<usize>| bucket.start / BLOCK..bucket.end.div_ceil(BLOCK);
+        let reaches = [self.point_reach_squared, self.dir_reach_squared];
+        let near = |photon: &PhotonKey, bucket: &Range<usize>, number: usize| {
+            let place = (photon.point.as_vec3(), photon.dir.as_vec3());
+            self.entries[number].near(place, reaches) & lanes_within(bucket, number)
         };
-        let firsts: SmallVec<[IndexEntry; TOGETHER]> = buckets.iter().map(first).collect();
-        for (index, ((tag, bucket), first)) in buckets.into_iter().zip(&firsts).enumerate() {
-            let Some((_, others)) = self.entries[bucket].split_first() else { continue };
-            let PhotonKey { point, dir, .. } = photons[index];
-            let (point, dir) = (point.as_vec3(), dir.as_vec3());
-            for entry in std::iter::once(first).chain(others) {
-                if entry.tag == tag
-                    && dir.distance_squared(Vec3::from_array(entry.dir)) <= self.dir_reach_squared
-                    && point.distance_squared(Vec3::from_array(entry.point))
-                        <= self.point_reach_squared
-                {
-                    visit(index, entry.record);
+        let first = |(photon, (_, bucket)): (&PhotonKey, &(u32, Range<usize>))| {
+            blocks(bucket).next().map_or(0, |number| near(photon, bucket, number))
+        };
+        let firsts: SmallVec<[u32; TOGETHER]> = photons.iter().zip(&buckets).map(first).collect();
+        for (index, ((tag, bucket), first)) in buckets.into_iter().zip(firsts).enumerate() {
+            for number in blocks(&bucket) {
+                let is_first = number == bucket.start / BLOCK;
+                let mut near =
+                    if is_first { first } else { near(&photons[index], &bucket, number) };
+                let block = &self.entries[number];
+                while near != 0 {
+                    let lane = near.trailing_zeros() as usize;
+                    near &= near - 1;
+                    if block.tag[lane] == tag {
+                        visit(index, block.record[lane]);
+                    }
                 }
             }
         }
@@ -173,7 +223,7 @@ fn sorted(
     placed: Vec<(u64, IndexEntry)>,
     mask: u64,
     pace: &Pace<'_>,
-) -> Option<(Vec<u32>, Vec<IndexEntry>)> {
+) -> Option<(Vec<u32>, Vec<EntryBlock>)> {
     let mut starts = vec![0u32; mask as usize + 2];
     for (hash, _) in &placed {
         starts[(hash & mask) as usize + 1] += 1;
@@ -187,11 +237,12 @@ fn sorted(
         *start = sum;
     });
     let mut next = starts.clone();
-    let mut entries = vec![IndexEntry::default(); placed.len()];
+    let mut entries = vec![EntryBlock::default(); placed.len().div_ceil(BLOCK)];
     for (hash, entry) in placed {
-        let place = &mut next[(hash & mask) as usize];
-        entries[*place as usize] = entry;
-        *place += 1;
+        let next = &mut next[(hash & mask) as usize];
+        let place = *next as usize;
+        entries[place / BLOCK].set(place % BLOCK, &entry);
+        *next += 1;
         if pace.spend(1).is_break() {
             return None;
         }

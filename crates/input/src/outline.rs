@@ -93,6 +93,8 @@ fn words(key: &str, value: Option<&Value>) -> String {
     match value {
         Value::Bool(true) => label,
         Value::Bool(false) => format!("no {label}"),
+        // All as by default.
+        Value::Object(fields) if fields.is_empty() => label,
         Value::Object(fields) if fields.len() > 1 => {
             format!("{label} ({})", value_words(key, value))
         }

@@ -32,7 +32,7 @@ pub(super) fn parse_records(text: &str) -> Result<u64, String> {
     let count = parse_count(text)?;
     if count > MOST_RECORDS {
         return Err(format!(
-            "`{text}` is out of range, expected up to {MOST_RECORDS}: each takes about 600 bytes in every thread"
+            "`{text}` is out of range, expected up to {MOST_RECORDS}: each takes about 350 bytes in every thread"
         ));
     }
     Ok(count)

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// Version of the numerics. Every change that alters a committed report raises it, so that a
 /// report, a checkpoint or a record from older numerics is never mistaken for a current one.
-pub const NUMERICS: u32 = 22;
+pub const NUMERICS: u32 = 23;
 
 /// How to trace and when to stop. Its names in files are part of the identity of a run, and stay
 /// fixed when the code changes.
@@ -179,7 +179,7 @@ pub struct GatherPlan {
     /// Half-angle of the window in the first stage.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
     pub angle_deg: Option<f64>,
-    /// Number of gather paths in a pass, over all sensors. Each takes about 600 bytes in every thread.
+    /// Number of gather paths in a pass, over all sensors. Each takes about 350 bytes in every thread.
     #[schemars(range(min = 1, max = MOST_RECORDS))]
     pub records: Option<u64>,
     /// Number of photon paths in a pass.

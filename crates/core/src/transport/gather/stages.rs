@@ -22,7 +22,7 @@ pub(crate) const FIRST_PASSES: u64 = 16;
 /// times as many in total.
 const GROWTH: u64 = 16;
 /// Largest number of gather paths of a pass, from all sensors of the run, that stages grow to: with its record
-/// and the entries of an index, each takes about 600 bytes for each pass of a wave.
+/// and the entries of an index, each takes about 350 bytes for each pass of a wave.
 const MOST_GATHER_PATHS: u64 = 1 << 18;
 
 /// Readings by kernels of several orders, from the same photons and records.

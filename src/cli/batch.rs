@@ -6,7 +6,7 @@ use crate::cli::exit::{INTERRUPTED, fail, warn};
 use crate::cli::junit::{open_junit, write_junit};
 use crate::cli::process::{on_ctrl_c, use_threads};
 use crate::cli::values::{parse_count, parse_percent, parse_shard};
-use crate::study::{BatchOptions, FinishedStudy, OnExisting, run_study};
+use crate::study::{BatchEvent, BatchOptions, FinishedStudy, OnExisting, run_study};
 use clap::Args;
 use lumiduct_core::transport::Shard;
 use lumiduct_input::StudySettings;
@@ -86,9 +86,16 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
         shard: args.shard.unwrap_or(Shard::WHOLE),
     };
     let display = Mutex::new(Display::new(args.quiet));
-    let outcome = run_study(&args.study, &options, &interrupt, &|progress| {
-        if let Ok(mut display) = display.lock() {
-            display.show_batch(progress);
+    let outcome = run_study(&args.study, &options, &interrupt, &|event| match event {
+        BatchEvent::Read(remarks) => {
+            if !args.quiet {
+                warn(remarks);
+            }
+        }
+        BatchEvent::Progress(progress) => {
+            if let Ok(mut display) = display.lock() {
+                display.show_batch(&progress);
+            }
         }
     });
     if let Ok(display) = display.lock() {
@@ -107,11 +114,8 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
 
 /// Prints the outcome of a batch; the exit code says whether every design is as requested or, of a search, one is found.
 pub(super) fn tell(finished: &FinishedStudy, quiet: bool) -> ExitCode {
-    if !quiet {
-        warn(&finished.warnings);
-        if let Err(error) = print(&summary(finished)) {
-            return fail(&error);
-        }
+    if !quiet && let Err(error) = print(&summary(finished)) {
+        return fail(&error);
     }
     let [done, wanted] = finished.done;
     if done < wanted {

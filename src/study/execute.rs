@@ -23,6 +23,15 @@ use std::time::{Duration, Instant};
 /// alone: designs are small, and end between waves of 128 batches.
 const BATCH_PARTS: u64 = 8;
 
+/// What a batch reports before its results.
+#[derive(Debug, Clone, Copy)]
+pub enum BatchEvent<'a> {
+    /// Study and scene have been read, with these remarks.
+    Read(&'a [Diagnostic]),
+    /// Designs are being computed.
+    Progress(BatchProgress),
+}
+
 /// Progress of a batch.
 #[derive(Debug, Clone, Copy)]
 pub struct BatchProgress {
@@ -87,7 +96,7 @@ pub(crate) struct DesignBatch<'a> {
     /// Designs in flight at once.
     pub(crate) jobs: usize,
     pub(crate) interrupt: &'a Interrupt,
-    pub(crate) watch: &'a (dyn Fn(&BatchProgress) + Sync),
+    pub(crate) watch: &'a (dyn Fn(BatchEvent<'_>) + Sync),
 }
 
 /// Traces those of the wanted designs that have no record yet. All designs are numbered from that of the first without a gap;
@@ -312,7 +321,7 @@ pub(crate) struct Board<'a> {
     wanted: usize,
     pending: usize,
     start: Instant,
-    watch: &'a (dyn Fn(&BatchProgress) + Sync),
+    watch: &'a (dyn Fn(BatchEvent<'_>) + Sync),
     state: Mutex<BoardState>,
 }
 
@@ -363,13 +372,13 @@ impl<'a> Board<'a> {
         let BoardState { ended, in_flight, best } = &*state;
         let in_flight = in_flight.iter().map(|(_, share)| share).sum::<f64>();
         let found = self.wanted - self.pending;
-        (self.watch)(&BatchProgress {
+        (self.watch)(BatchEvent::Progress(BatchProgress {
             done: found + ended,
             wanted: self.wanted,
             found,
             fraction: ((*ended as f64 + in_flight) / self.pending.max(1) as f64).min(1.0),
             elapsed: self.start.elapsed(),
             best: *best,
-        });
+        }));
     }
 }

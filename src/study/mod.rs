@@ -20,7 +20,7 @@ mod score;
 mod search;
 mod store;
 
-pub use execute::{BatchProgress, BestDesign};
+pub use execute::{BatchEvent, BatchProgress, BestDesign};
 pub use store::OnExisting;
 
 use crate::pipeline;
@@ -32,7 +32,7 @@ use crate::study::facts::facts;
 use crate::study::production::production;
 use crate::study::search::{ProposalEnd, search};
 use crate::study::store::Store;
-use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Shard};
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::{Problems, name_hint};
@@ -70,8 +70,6 @@ pub struct FinishedStudy {
     pub done: [usize; 2],
     /// Folder of the results.
     pub dir: PathBuf,
-    /// Remarks on study and scene.
-    pub warnings: Vec<Diagnostic>,
 }
 
 /// Runs a study file and writes its results.
@@ -86,9 +84,10 @@ pub fn run_study(
     path: &Path,
     options: &BatchOptions,
     interrupt: &Interrupt,
-    watch: &(dyn Fn(&BatchProgress) + Sync),
+    watch: &(dyn Fn(BatchEvent<'_>) + Sync),
 ) -> Result<FinishedStudy> {
     let study = load_study(path, &options.settings)?;
+    watch(BatchEvent::Read(&study.warnings));
     expect_measures(&study)?;
     if study.plan.search().is_some() && options.shard != Shard::WHOLE {
         let why =
@@ -126,7 +125,6 @@ pub fn run_study(
         written: Written::New,
         done,
         dir: dir.clone(),
-        warnings: study.warnings.clone(),
     };
     if records.len() < planned {
         if study.plan.search().is_some() && !records.is_empty() {
@@ -239,7 +237,7 @@ pub fn merge_study(
     let done = [records.len(), facts.designs];
     let report = analysed(facts.clone(), records);
     let written = finish(&whole, &report, (&text, None), &Interrupt::default())?;
-    Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
+    Ok(FinishedStudy { facts, report: Some(report), written, done, dir })
 }
 
 /// The default folder of the results.

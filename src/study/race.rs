@@ -57,14 +57,14 @@ pub(crate) struct Race {
     laps_left: usize,
     /// Designs of all combinations in the whole race.
     most: usize,
-    /// Designs of each combination in the first lap, at least.
+    /// Designs of each combination in the first lap, at least; fewer where `most` has not enough for all.
     first: usize,
     /// Designs that each of those that run may have had up to now.
     designs: usize,
 }
 
 impl Race {
-    /// A race for a number of designs, in which each combination has at least a `first` number.
+    /// A race for a number of designs, in which each combination has at least a `first` number, as far as `most` allows.
     pub(crate) fn new(parameters: &[Parameter], most: usize, first: usize) -> Self {
         Self::of(ChoiceSet::all(parameters), most, first)
     }
@@ -147,6 +147,8 @@ mod tests {
         assert_eq!(raced(&[f64::INFINITY; 2], 10, 2), [5, 5]);
         assert_eq!(raced(&[0.7], 9, 2), [9]);
         assert_eq!(raced(&[0.7], 4, 5), [4], "never more than it may trace");
+        assert_eq!(raced(&[0.1, 0.2, 0.3, 0.4], 10, 5).iter().sum::<usize>(), 10);
+        assert!(raced(&[0.1, 0.2, 0.3, 0.4], 3, 5).iter().sum::<usize>() <= 4, "one each at least");
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Searches for the best design of a rod whose transmission follows from Beer and Lambert's law.
 
-use lumiduct::study::{BatchOptions, BatchProgress, FinishedStudy, OnExisting, run_study};
+use lumiduct::study::{
+    BatchEvent, BatchOptions, BatchProgress, FinishedStudy, OnExisting, run_study,
+};
 use lumiduct_core::measure::CheckOutcome;
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::{StudySettings, load_study};
@@ -142,10 +144,9 @@ pub(crate) fn stopped_when(
         shard: Shard::WHOLE,
     };
     let interrupt = Interrupt::default();
-    let stop = |progress: &BatchProgress| {
-        if is_reached(progress) {
-            interrupt.raise();
-        }
+    let stop = |event: BatchEvent<'_>| match event {
+        BatchEvent::Progress(progress) if is_reached(&progress) => interrupt.raise(),
+        BatchEvent::Read(_) | BatchEvent::Progress(_) => {}
     };
     run_study(path, &options, &interrupt, &stop).unwrap()
 }

@@ -11,7 +11,9 @@ use glam::DVec3;
 use lumiduct_core::optics::{Finish, FinishModel, Incidence, REFERENCE_WAVELENGTH, Spread};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::shape::Toward;
-use lumiduct_core::scene::{FaceArea, Ray, Scene, SensorKind, SourceId, StartSurfaces};
+use lumiduct_core::scene::{
+    DrawnWavelength, FaceArea, Ray, Scene, SensorKind, SourceId, StartSurfaces,
+};
 use lumiduct_core::tally::Tally;
 use lumiduct_core::transport::{Event, Path, Vertex, walk};
 use lumiduct_input::{self as input, Settings};
@@ -49,7 +51,8 @@ fn flux(scene: &Scene, batch: u64) -> f64 {
     let mut sum = 0.0;
     for index in batch * PATHS..(batch + 1) * PATHS {
         let mut sampler = Sampler::for_path(SEED, STREAM, index);
-        let path = Path::emitted(scene, SourceId::new(0), source.emit(scene, &mut sampler));
+        let emitted = source.emit(scene, DrawnWavelength::REFERENCE, &mut sampler);
+        let path = Path::emitted(scene, SourceId::new(0), emitted);
         let mut places = Sampler::for_path(SEED, STREAM + 1, index);
         let mut join = |path: &Path, event: Event<'_>| {
             if let Event::Arrive(vertex) = event {

@@ -19,7 +19,7 @@ use lumiduct_base::math::Frame;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::mesh::{Mesh, TriangleLine};
 use lumiduct_core::scene::shape::Toward;
-use lumiduct_core::scene::{Ray, Scene, SourceId};
+use lumiduct_core::scene::{DrawnWavelength, Ray, Scene, SourceId};
 use lumiduct_core::transport::{Event, Path, walk};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -84,7 +84,7 @@ fn queries(scene: &Scene) -> Vec<Query> {
     let mut queries = Vec::with_capacity(RAYS);
     for index in 0.. {
         let mut sampler = Sampler::for_path(1, 1, index);
-        let emitted = scene.sources[0].emit(scene, &mut sampler);
+        let emitted = scene.sources[0].emit(scene, DrawnWavelength::REFERENCE, &mut sampler);
         let path = Path::emitted(scene, SourceId::new(0), emitted);
         walk(scene, path, 100_000, &mut sampler, &mut |path: &Path, event: Event<'_>| {
             if let Event::Travel(_) = event {

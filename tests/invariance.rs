@@ -9,7 +9,7 @@ mod traced;
 use lumiduct_core::measure::{self, Measures};
 use lumiduct_core::plan::Request;
 use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::SourceId;
+use lumiduct_core::scene::{DrawnWavelength, SourceId};
 use lumiduct_core::transport::{Event, Path as LightPath, Run, walk};
 use lumiduct_input::{self as input, Job, Settings};
 use std::ops::ControlFlow;
@@ -227,7 +227,7 @@ fn drift_of_skew(job: &Job) -> (f64, usize) {
     for look in 0..LOOKS {
         let mut sampler = Sampler::for_path(1, 0, look);
         let source = &job.scene.sources[0];
-        let emitted = source.emit(&job.scene, &mut sampler);
+        let emitted = source.emit(&job.scene, DrawnWavelength::REFERENCE, &mut sampler);
         let skew = |point: glam::DVec3, dir: glam::DVec3| point.x * dir.y - point.y * dir.x;
         let at_start = skew(emitted.ray.origin(), emitted.ray.dir());
         let path = LightPath::emitted(&job.scene, SourceId::new(0), emitted);

@@ -26,7 +26,7 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     expect_visible_sources(job, &mut problems);
     expect_passages(job, &mut problems);
     expect_polarisation(job, &mut problems);
-    expect_wavelengths(job, &mut problems);
+    expect_narrow_spectra(job, &mut problems);
     expect_one_wavelength(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
@@ -156,19 +156,19 @@ fn expect_passages(job: &Job, problems: &mut Problems) {
     }
 }
 
-/// Refuses estimators that cannot compute light with a spectrum where sources have one.
-fn expect_wavelengths(job: &Job, problems: &mut Problems) {
-    if !job.scene.is_spectral() {
+/// Remarks on estimators that follow few wavelengths of broad spectra.
+fn expect_narrow_spectra(job: &Job, problems: &mut Problems) {
+    if job.scene.spectra.are_narrow() {
         return;
     }
     for (key, request) in requests(job) {
         if is_asked(request, Estimator::has_records) {
             let message = format!(
-                "`{}` cannot compute light with a spectrum: photons and records that meet have different wavelengths",
+                "`{}` follows few wavelengths in a pass: colours of broad spectra have large errors",
                 request.name()
             );
-            let hint = "use `auto`, `forward`, `backward` or `mix`, or remove the spectra";
-            problems.error(&key, message).hint(hint);
+            let hint = "for colours use `auto`, `forward`, `backward` or `mix`";
+            problems.warning(&key, message).hint(hint);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Light with spectra: each estimator draws wavelengths in its own way and finds the same flux and the same colour.
 
 use crate::sources::rod;
-use crate::trial::{Way, agree, measures, measures_of_paths};
+use crate::trial::{Gathering, Way, agree, measures, measures_of_paths};
 use std::f64::consts::PI;
 
 /// A rod that disperses and absorbs by wavelength, with a mirror around it and the given lamps.
@@ -16,8 +16,13 @@ const COLD: &str = r#"spectrum = { sum = [{ share = 1, spectrum = { peak = { pea
 const RED: &str = "spectrum = { peak = { peak_nm = 630, fwhm_nm = 18 } }";
 const LINE: &str = "spectrum = { line_nm = 546.1 }";
 
+/// Photons meet only the records of their own band.
+const WINDOW: Gathering = Gathering { records: 4000, photons: 8000, ..Gathering::to_depth(1) };
+
 fn all_agree(what: &str, text: &str) {
-    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed]);
+    let merged = Gathering { records: 2000, photons: 4000, ..WINDOW };
+    let gathered = [Way::Gather(WINDOW), Way::Merged(merged)];
+    agree(what, text, &[&[Way::Forward, Way::Backward, Way::Mixed][..], &gathered].concat());
 }
 
 #[test]
@@ -173,7 +178,8 @@ flux_lm = 5
 floor = {{ plane = {{ cells = [2, 1] }}, on = "paper.surface", counts = "incident" }}
 "#
     );
-    agree("lamps in a white box", &text, &[Way::Forward, Way::Mixed]);
+    let ways = [Way::Forward, Way::Mixed, Way::Merged(WINDOW)];
+    agree("lamps in a white box", &text, &ways);
 }
 
 /// A gather path of most wavelengths crosses a glow that is dark there.
@@ -346,7 +352,8 @@ fn estimators_find_the_same_colours_in_cells() {
     };
     let text = coloured_rod(&(lamp("cold", -1.5, COLD) + &lamp("red", 1.5, RED)))
         .replace("cells = [2, 1]", "cells = [6, 5]");
-    let all = [Way::Forward, Way::Backward, Way::Mixed].map(|way| measures(&text, way));
+    let ways = [Way::Forward, Way::Backward, Way::Mixed, Way::Gather(WINDOW)];
+    let all = ways.map(|way| measures(&text, way));
     let [forward, others @ ..] = &all;
     let expected = forward.maps[0].colours.as_ref().unwrap();
     for found in others {

@@ -124,6 +124,27 @@ fn each_alone_in_tubes() {
     );
 }
 
+/// Two lamps of one spectrum and one of another, on walls that reflect them differently.
+#[test]
+fn each_alone_with_spectra() {
+    let lamp = |name: &str, x: f64, spectrum: &str| {
+        format!(
+            "[sources.{name}.disk]\nradius_mm = 2\nflux_lm = 10\n{spectrum}\nat = {{ position_mm = [{x}, 0, 0.1] }}\n"
+        )
+    };
+    let red = "spectrum = { peak = { peak_nm = 630, fwhm_nm = 18 } }";
+    let others = lamp("right", 2.0, red) + &lamp("line", 0.0, "spectrum = { line_nm = 546.1 }");
+    for (what, lit, reflectance) in [
+        ("mirror", 12, "specular = { reflectance = { by_nm = [[500, 0.7], [600, 0.9]] } }"),
+        ("white", 30, "lambertian = { reflectance = { by_nm = [[500, 0.7], [600, 0.9]] } }"),
+    ] {
+        let text = tube(&format!("{{ {reflectance} }}"))
+            .replace("flux_lm = 10", &format!("flux_lm = 10\n{red}"))
+            .replace("[sensors]", &format!("{others}[sensors]"));
+        each_agrees(what, &text, lit);
+    }
+}
+
 #[test]
 fn each_alone_in_windows() {
     let open = "{ open = {} }";

@@ -130,6 +130,10 @@ fn a_choice_that_makes_no_scene_is_named_with_its_line() {
     let said = String::from_utf8(output.stderr).unwrap();
     let words = ["study.toml:13", "unknown medium `acrylc`", "did you mean `acrylic`"];
     assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    // Before anything is computed, and so before a batch that fails.
+    let said = place.bad(2, "batch study.toml -o out");
+    let [remark, failure] = ["unknown medium `acrylc`", "error:"].map(|part| said.find(part));
+    assert!(remark.is_some() && remark < failure, "{said}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Spectra: what is refused, what is remarked, and what is reported.
 
-use crate::Place;
+use crate::{Place, errors};
 use std::fs;
 
 /// The rod with a spectrum on its lamp, and further lines.
@@ -13,17 +13,27 @@ fn lit_by(spectrum: &str, lines: &str) -> Place {
 }
 
 #[test]
-fn estimators_with_records_and_comparisons_are_refused_where_light_has_a_spectrum() {
+fn comparisons_are_refused_where_light_has_a_spectrum() {
     let place = lit_by("\"cie_a\"", "");
-    for estimator in ["gather", "mis"] {
-        let said = place.bad(2, &format!("run rod.toml --estimator {estimator} -o out"));
-        assert!(said.contains("cannot compute light with a spectrum"), "{said}");
-    }
     let said = place
         .bad(2, "compare rod.toml --estimators forward,backward --sensor exit --time 1s -o out");
     assert!(said.contains("methods are compared without spectra"), "{said}");
     assert!(!place.names().contains(&"out".to_owned()));
     place.good("run rod.toml --estimator auto --paths 20k -o auto -q");
+}
+
+#[test]
+fn records_of_broad_spectra_are_remarked() {
+    for (spectrum, is_broad) in [("\"cie_a\"", true), ("{ line_nm = 600 }", false)] {
+        let place = lit_by(spectrum, "");
+        for estimator in ["gather", "mis"] {
+            let command =
+                format!("run rod.toml --estimator {estimator} --paths 20k -o {estimator}");
+            let said = errors(&place.run(&command));
+            let own = said.contains(&format!("`{estimator}` follows few wavelengths in a pass"));
+            assert_eq!(own, is_broad, "{said}");
+        }
+    }
 }
 
 #[test]

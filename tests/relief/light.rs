@@ -7,7 +7,7 @@ use glam::DVec3;
 use lumiduct_core::measure;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::shape::Toward;
-use lumiduct_core::scene::{FaceId, Owner, SourceId};
+use lumiduct_core::scene::{DrawnWavelength, FaceId, Owner, SourceId};
 use lumiduct_core::transport::{Event, Path, Run, walk};
 use lumiduct_input::Job;
 use std::collections::BTreeMap;
@@ -22,7 +22,11 @@ fn follow(job: &Job, count: u64, mut see: impl FnMut(&Event<'_>) -> ControlFlow<
     for index in 0..count {
         let id = SourceId::new(index as usize % sources);
         let mut sampler = Sampler::for_path(11, 0, index);
-        let emitted = job.scene.sources[id.index()].emit(&job.scene, &mut sampler);
+        let emitted = job.scene.sources[id.index()].emit(
+            &job.scene,
+            DrawnWavelength::REFERENCE,
+            &mut sampler,
+        );
         let path = Path::emitted(&job.scene, id, emitted);
         walk(&job.scene, path, BOUNCES, &mut sampler, &mut |_: &Path, event: Event<'_>| {
             see(&event)
@@ -124,7 +128,8 @@ layout = { row = { pitch_mm = 2.5, along_mm = [14, 29] } }
     for index in 0..count {
         let id = SourceId::new(index as usize % fluxes.len());
         let mut sampler = Sampler::for_path(12, 0, index);
-        let emitted = scene.sources[id.index()].emit(scene, &mut sampler);
+        let emitted =
+            scene.sources[id.index()].emit(scene, DrawnWavelength::REFERENCE, &mut sampler);
         let worth = fluxes[id.index()] * fluxes.len() as f64 / count as f64;
         let mut seen = BTreeMap::new();
         let path = Path::emitted(scene, id, emitted);

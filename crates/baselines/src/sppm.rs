@@ -206,6 +206,7 @@ impl Gatherer<'_, '_> {
                 path: RecordPath {
                     place: self.waiting.cells.len() as u32 - 1,
                     depth: path.depth + 1,
+                    band: path.band,
                 },
             };
             self.waiting.records.push(GatherRecord::Surface(record));
@@ -252,9 +253,8 @@ impl SppmStream<'_, '_> {
         let Sppm { sensor, surfaces, .. } = self.sppm;
         let interface = vertex.interface;
         let surface = surfaces.of(interface.acting.prim);
-        if interface.visibility == Visibility::Invisible
-            || !self.records.may_take(surface, vertex.point, vertex.dir)
-        {
+        let key = PhotonKey { surface, band: path.band, point: vertex.point, dir: vertex.dir };
+        if interface.visibility == Visibility::Invisible || !self.records.may_take(&key) {
             return;
         }
         let facing = facing(sensor.scene, path, vertex);
@@ -263,7 +263,6 @@ impl SppmStream<'_, '_> {
         let photon = SurfaceHit { surface, medium, point: vertex.point, incidence };
         let photon = PhotonHit::Surface(photon);
         let Self { weights, cells, readings, .. } = self;
-        let key = PhotonKey { surface, point: vertex.point, dir: vertex.dir };
         self.records.visit(&[key], |_, record| {
             let Some([share, ..]) = weights.flux(record, &photon) else { return };
             let (flux, depth) =

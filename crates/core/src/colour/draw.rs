@@ -2,10 +2,23 @@
 
 use crate::colour::observer::{colour_matching, luminous_efficiency};
 use crate::colour::spectrum::Spectrum;
+use glam::{DVec2, DVec3};
 
 /// Shares of the draws in proportion to luminous flux, to the sum of the three tristimulus values, and to radiant flux, 1. A draw
 /// then has at most some 1/0.6 of the mean luminous flux, and no visible light is missed.
 const SHARES: [f64; 3] = [0.6, 0.3, 0.1];
+
+/// Offsets in a band for which scatter is judged.
+const OFFSETS: u32 = 64;
+
+/// Root mean square deviations of the light of a few wavelengths from that of their spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CombScatter {
+    /// Of the luminous flux, relative.
+    pub(crate) flux: f64,
+    /// Of the chromaticity, distance in u', v'.
+    pub(crate) colour: f64,
+}
 
 /// Draws wavelengths in proportion to a spectrum, by what matters to the eye or by photons.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,6 +113,33 @@ impl SpectralDraw {
         self.piece(nm).map_or(0.0, |piece| 1.0 / piece.emphasis)
     }
 
+    /// How much the light of one wavelength of each of this many bands of equal probability, all at the same random offset in their bands, differs from
+    /// that of the whole spectrum.
+    pub(crate) fn scatter_by(&self, bands: u32) -> CombScatter {
+        let stimuli = |offset: f64| {
+            let numbers = (0..bands).map(|band| (f64::from(band) + offset) / f64::from(bands));
+            let drawn = numbers.map(|u| {
+                let nm = self.sample(u);
+                self.relative_power(nm) * DVec3::from_array(colour_matching(nm))
+            });
+            drawn.sum::<DVec3>() / f64::from(bands)
+        };
+        let mean = DVec3::from_array(self.spectrum.tristimulus());
+        let coordinates = |light: DVec3| {
+            let [x, y, z] = light.to_array();
+            let sum = x + 15.0 * y + 3.0 * z;
+            DVec2::new(4.0 * x, 9.0 * y) / sum
+        };
+        let offsets = (0..OFFSETS).map(|place| (f64::from(place) + 0.5) / f64::from(OFFSETS));
+        let squares = offsets.map(stimuli).map(|light| {
+            let flux = (light.y / mean.y - 1.0).powi(2);
+            DVec2::new(flux, coordinates(light).distance_squared(coordinates(mean)))
+        });
+        let [flux, colour] =
+            (squares.sum::<DVec2>() / f64::from(OFFSETS)).to_array().map(f64::sqrt);
+        CombScatter { flux, colour }
+    }
+
     /// A wavelength of each range of wavelengths that are drawn, nm.
     pub(crate) fn places(&self) -> impl Iterator<Item = f64> {
         let drawn = self.pieces.iter().filter(|piece| piece.values != [0.0; 2]);
@@ -155,6 +195,19 @@ mod tests {
                 prop_assert!((sum / expected - 1.0).abs() < 2e-3, "{sum} {expected}");
             }
         }
+    }
+
+    #[test]
+    fn few_wavelengths_know_narrow_spectra_better_than_broad_ones() -> Result<(), NoSpectrum> {
+        let scatter = |spectrum: Spectrum, bands| SpectralDraw::new(spectrum).scatter_by(bands);
+        let line = scatter(Spectrum::line(546.1)?, 1);
+        assert!(line.flux < 1e-4 && line.colour < 1e-4, "{line:?}");
+        let red = Spectrum::of_law(|nm| crate::colour::gaussian(nm, 630.0, 18.0))?;
+        let [one, two] = [1, 2].map(|bands| scatter(red.clone(), bands));
+        assert!((0.03..0.05).contains(&one.flux) && two.flux < 0.7 * one.flux, "{one:?} {two:?}");
+        let daylight = scatter(Spectrum::of_law(crate::colour::illuminant_d65)?, 5);
+        assert!(daylight.flux < 0.03 && daylight.colour > 0.03, "{daylight:?}");
+        Ok(())
     }
 
     #[test]

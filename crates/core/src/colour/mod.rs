@@ -14,6 +14,7 @@ mod tristimulus;
 
 pub use chromaticity::Chromaticity;
 pub use dominant::{DominantWavelength, WavelengthKind, dominant_wavelength};
+pub(crate) use draw::CombScatter;
 pub use draw::SpectralDraw;
 pub use observer::{MAX_EFFICACY, VISIBLE};
 pub(crate) use observer::{colour_matching, colour_matching_10_deg, luminous_efficiency};

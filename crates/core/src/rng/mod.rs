@@ -50,6 +50,8 @@ pub mod stream {
     pub(crate) const GATHER_POINTS: u64 = 15 << 32;
     /// Cells of a sensor that trials of gather paths take.
     pub(crate) const TRIED_CELLS: u64 = 16 << 32;
+    /// Wavelengths that the photons and records of a pass share.
+    pub(crate) const WAVELENGTHS: u64 = 17 << 32;
     /// Gather paths of baselines.
     pub const BASELINE_PATHS: u64 = 5 << 32;
     /// Their choices at interfaces.

@@ -10,7 +10,7 @@ use crate::scene::relief::{PatchCut, Relief, ReliefWall, Trim};
 use crate::scene::{
     Accel, COINCIDENCE, Face, FaceId, FacePiece, FinishId, LightGroups, MediumId, MeshBody,
     NamedFinish, Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid,
-    SolidId, Source, SourceId,
+    SolidId, Source, SourceId, SourceSpectra,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -61,6 +61,7 @@ impl Builder {
             meshes: Vec::new(),
             ports: Vec::new(),
             sources: Vec::new(),
+            spectra: SourceSpectra::default(),
             light: LightGroups::default(),
             sensors: Vec::new(),
             tolerance: 0.0,
@@ -249,6 +250,7 @@ impl Builder {
                 .extend((0..body.mesh.triangle_count()).map(|triangle| body.mesh.bounds(triangle)));
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
+        scene.spectra = SourceSpectra::new(&scene.sources);
         scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
         if let Accel::Scan(_) = scene.accel {
             let solids = (0..scene.solids.len()).map(SolidId::new);

@@ -7,7 +7,7 @@ use crate::scene::pattern::Pattern;
 use crate::scene::relief::Relief;
 use crate::scene::{
     Accel, Face, Inside, LightGroups, MediumId, MeshBody, Patch, PlainLeg, PrimId, Sensor, SolidId,
-    Source, SourceId,
+    Source, SourceId, SourceSpectra,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -74,6 +74,8 @@ pub struct Scene {
     pub ports: Vec<Patch>,
     /// All sources.
     pub sources: Vec<Source>,
+    /// The different spectra of the sources.
+    pub spectra: SourceSpectra,
     /// Sources that are measured together.
     pub light: LightGroups,
     /// All sensors.

@@ -17,7 +17,7 @@ impl Estimator {
         }
     }
 
-    /// Whether photons meet records. Which sensors a photon has passed is then unknown, and its wavelength is not that of the record.
+    /// Whether photons meet records. Which sensors a photon has passed is then unknown.
     pub fn has_records(self) -> bool {
         match self {
             Self::Forward | Self::Backward | Self::Mix => false,
@@ -54,7 +54,8 @@ impl Estimator {
             Self::Forward => true,
             Self::Mix => scene.sources.iter().any(can_meet) || scatters(scene),
             Self::Backward => scene.sources.iter().all(can_meet),
-            Self::Gather => !scene.is_spectral() && scene.sources.iter().all(can_meet),
+            // A pilot judges fluxes, but with the few wavelengths of a pass colours of broad spectra have much larger errors.
+            Self::Gather => scene.spectra.are_narrow() && scene.sources.iter().all(can_meet),
             Self::Mis => false,
         }
     }

@@ -13,7 +13,6 @@ use crate::transport::connect::weights::Sharing;
 use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::merged::MergedStream;
-use crate::transport::gather::settings::WAVE_PASSES;
 use crate::transport::gather::stream::PhotonStream;
 use crate::transport::gather::{self, GatherSettings};
 use crate::transport::tally::{Counts, Series, Stage, merged};
@@ -117,7 +116,7 @@ impl<'s> Prepared<'s> {
     pub(crate) fn block_batches(&self) -> u64 {
         match self {
             Self::Backward(_) | Self::Mix(_) => 1,
-            Self::Gather(_) | Self::Mis(_) => WAVE_PASSES,
+            Self::Gather(own) | Self::Mis(own) => own.passes_together(),
         }
     }
 

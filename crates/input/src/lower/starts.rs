@@ -14,7 +14,7 @@ use lumiduct_core::optics::Finish;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::shape::Crossing;
 use lumiduct_core::scene::{
-    Emitted, Emitter, FaceId, FinishId, Owner, Ray, Scene, SolidId, StartSolids,
+    DrawnWavelength, Emitted, Emitter, FaceId, FinishId, Owner, Ray, Scene, SolidId, StartSolids,
 };
 
 /// Starts tested per source: any part that is missed is less than a hundredth of the source.
@@ -103,7 +103,10 @@ pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
             continue;
         }
         let starts: Vec<_> = (0..LOOKS)
-            .map(|look| source.emit(scene, &mut Sampler::for_path(0, u64::MAX, look)))
+            .map(|look| {
+                let mut sampler = Sampler::for_path(0, u64::MAX, look);
+                source.emit(scene, DrawnWavelength::REFERENCE, &mut sampler)
+            })
             .collect();
         let buried = |solid: SolidId| {
             starts.iter().all(|start| start.inside.contains(solid)) && is_opaque(scene, solid)

@@ -11,7 +11,9 @@ pub(crate) mod sky;
 
 use crate::colour::SpectralDraw;
 use crate::scene::shape::{Flat, Region, Shape, Sphere};
-use crate::scene::{Emission, FittedLight, Inside, LuminousOpening, PrimId, Ray, RaySet, SolidId};
+use crate::scene::{
+    DrawnWavelength, Emission, FittedLight, Inside, LuminousOpening, PrimId, Ray, RaySet, SolidId,
+};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use std::sync::Arc;
@@ -143,8 +145,8 @@ pub struct Emitted {
     pub on: Option<PrimId>,
     /// The index of the shape of a surface source that it starts on; 0 for other sources.
     pub shape: usize,
-    /// Wavelength, nm.
-    pub wavelength: f64,
+    /// Its wavelength.
+    pub wavelength: DrawnWavelength,
 }
 
 impl Source {

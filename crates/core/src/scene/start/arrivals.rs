@@ -4,22 +4,22 @@
 //! and carries the extent that it represents, so that the mean of radiance times extent is the flux
 //! on the sensor. This module does not know what the path meets.
 
-use crate::optics::REFERENCE_WAVELENGTH;
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::crossing::hit::StartSide;
 use crate::scene::shape::Toward;
 use crate::scene::start::area::{AreaPoint, FaceArea};
+use crate::scene::start::around::Around;
 use crate::scene::start::directions::{
     Drawn, away, projected_toward, toward, view_direction, views_projected,
 };
 use crate::scene::start::polar::{PolarLaw, bin};
 use crate::scene::start::strata::{DrawnDirection, Strata, direction, numbers_in_pixel};
 use crate::scene::{
-    CountedLight, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind,
-    Sides, SurfaceSensor,
+    CountedLight, DrawnWavelength, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId,
+    SensorKind, Sides, SurfaceSensor, Wavelengths,
 };
 use glam::{DVec2, DVec3};
-use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk};
+use lumiduct_base::math::{Frame, cosine_hemisphere, disk};
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::PI;
 
@@ -43,8 +43,8 @@ pub struct Arrival {
     /// |cos θ| dA dω over the density of the draw, mm² sr: times radiance it is flux, times n² it
     /// is etendue.
     pub extent: f64,
-    /// Wavelength, nm.
-    pub wavelength: f64,
+    /// Its wavelength.
+    pub wavelength: DrawnWavelength,
     /// The values of the sensor that receive its light: cells, or cells of views.
     pub cells: SmallVec<[usize; 1]>,
 }
@@ -77,13 +77,6 @@ enum StartSet<'s> {
     Sphere(&'s Goniometer, Around),
 }
 
-/// A ball around everything that light can meet.
-#[derive(Debug, Clone, Copy)]
-struct Around {
-    center: DVec3,
-    radius: f64,
-}
-
 impl Arrival {
     /// The bin of its angle to the normal, of those of a law that is learned.
     pub fn polar_bin(&self) -> usize {
@@ -99,7 +92,7 @@ impl<'s> Arrivals<'s> {
             SensorKind::Surface(surface) => {
                 StartSet::Surface(surface, FaceArea::new(scene, &surface.faces))
             }
-            SensorKind::Goniometer(goniometer) => StartSet::Sphere(goniometer, around(scene)),
+            SensorKind::Goniometer(goniometer) => StartSet::Sphere(goniometer, Around::of(scene)),
         };
         let aimed = match &sensor.kind {
             // Light that leaves a face comes from the face.
@@ -141,7 +134,16 @@ impl<'s> Arrivals<'s> {
 
     /// Draws a start; `None` where it misses the sensor or a side that counts: such a draw represents no light.
     pub fn draw(&self, sampler: &mut Sampler<impl Numbers>) -> Option<Arrival> {
-        self.draw_from(None, sampler)
+        self.draw_from((None, Wavelengths::All), sampler)
+    }
+
+    /// Draws a start of some wavelengths; `None` as for [`Self::draw`].
+    pub(crate) fn draw_of(
+        &self,
+        wavelengths: Wavelengths,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Arrival> {
+        self.draw_from((None, wavelengths), sampler)
     }
 
     /// Draws a start from one of its strata, which are drawn equally often; `None` as for [`Self::draw`].
@@ -150,16 +152,16 @@ impl<'s> Arrivals<'s> {
         (strata, stratum): (&Strata<'s>, usize),
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Arrival> {
-        self.draw_from(Some((strata, stratum)), sampler)
+        self.draw_from((Some((strata, stratum)), Wavelengths::All), sampler)
     }
 
     #[inline(always)]
     fn draw_from(
         &self,
-        part: Option<(&Strata<'s>, usize)>,
+        (part, wavelengths): (Option<(&Strata<'s>, usize)>, Wavelengths),
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Arrival> {
-        let wavelength = self.scene.wavelength(sampler);
+        let wavelength = self.scene.gather_wavelength(wavelengths, sampler);
         let arrival = match &self.place {
             StartSet::Surface(sensor, area) => {
                 let u = sampler.pair(Dimension::GatherPosition);
@@ -379,7 +381,7 @@ impl<'s> Arrivals<'s> {
         cells: SmallVec<[usize; 1]>,
     ) -> Arrival {
         let inside = self.scene.inside_at(&ray, StartSide::Ahead);
-        let wavelength = REFERENCE_WAVELENGTH;
+        let wavelength = DrawnWavelength::REFERENCE;
         Arrival { ray, normal, inside, on, begins, extent, wavelength, cells }
     }
 }
@@ -387,13 +389,4 @@ impl<'s> Arrivals<'s> {
 /// sin² of the angle between a ray and a normal.
 fn sin_squared(ray: &Ray, normal: DVec3) -> f64 {
     (1.0 - ray.dir().dot(normal).powi(2)).max(0.0)
-}
-
-fn around(scene: &Scene) -> Around {
-    let solids = scene.patches.iter().map(|patch| patch.shape.bounds());
-    let meshes = scene.meshes.iter().map(|body| body.bounds());
-    let sources = scene.sources.iter().map(|source| source.emitter.bounds());
-    let bounds = solids.chain(meshes).chain(sources).fold(Aabb::EMPTY, Aabb::union);
-    // Slightly larger, for rounding, and a nanometre around a point that is alone.
-    Around { center: bounds.center(), radius: (0.5 * bounds.diagonal() * (1.0 + 1e-9)).max(1e-6) }
 }

@@ -4,15 +4,20 @@ use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::shape::Shape;
 use crate::scene::source::sky::EmitterKind;
 use crate::scene::{
-    EmitSide, Emitted, Emitter, Inside, Ray, Scene, SolidId, Source, StartSide, StartSolids,
+    DrawnWavelength, EmitSide, Emitted, Emitter, Inside, Ray, Scene, SolidId, Source, StartSide,
+    StartSolids,
 };
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame, disk};
 
 impl Source {
-    /// Starts a photon path.
-    pub fn emit(&self, scene: &Scene, sampler: &mut Sampler<impl Numbers>) -> Emitted {
-        let wavelength = self.wavelength(sampler);
+    /// Starts a photon path of a wavelength.
+    pub fn emit(
+        &self,
+        scene: &Scene,
+        wavelength: DrawnWavelength,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Emitted {
         let (ray, shape) = match &self.emitter {
             Emitter::Point(frame) => {
                 let dir = frame.to_world(self.emission.sample(EmitterKind::Point, sampler));

@@ -150,7 +150,7 @@ impl GatherPathCounter<'_, '_> {
         let photon = self.photon_fluxes.map_or(f64::INFINITY, |fluxes| {
             let source = place.source.index();
             let spectral =
-                self.backward.scene.sources[source].spectral_weight(self.arrival.wavelength);
+                self.backward.scene.sources[source].spectral_weight(self.arrival.wavelength.nm);
             spectral * fluxes[source] / (emitted * self.batches)
         });
         let gather = self.etendue / self.batches;
@@ -159,6 +159,7 @@ impl GatherPathCounter<'_, '_> {
         let at = (ray.origin(), *normal);
         let meets = self.backward.emitters.meets(place.source);
         let to_sensor = self.backward.joined_sensors.joined_ratio(first, self.id, at);
+        let windows = windows / self.backward.scene.pair_weight_of(place.source);
         Etendues::new([photon, gather], meets, [to_sensor, joined], windows)
     }
 
@@ -178,7 +179,7 @@ impl GatherPathCounter<'_, '_> {
         self.radiance += radiance;
         let flux = radiance * self.etendue;
         let Backward { layout, scene, .. } = self.backward;
-        let light = DetectedLight { flux, depth, source, wavelength: self.arrival.wavelength };
+        let light = DetectedLight { flux, depth, source, wavelength: self.arrival.wavelength.nm };
         self.readings.count((layout, &scene.light), self.id, &self.arrival.cells, &light);
     }
 

@@ -307,6 +307,7 @@ impl Mixing<'_, '_> {
         let gather = gather / self.paths;
         let meets = self.backward.emitters.meets(self.start.source);
         let to_source = self.backward.joined_to_source(sensor, first, &self.start);
+        let windows = windows / self.backward.scene.pair_weight_of(self.start.source);
         Etendues::new([self.photon, gather], meets, [joined, to_source], windows)
     }
 

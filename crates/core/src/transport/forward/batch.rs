@@ -27,6 +27,7 @@ impl Forward<'_> {
         let batch_paths = self.shares.iter().sum();
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
         let mut counter = PhotonCounter::new(self, readings, observer, pace);
+        counter.wavelengths = self.wavelengths(batch);
         let mut index = batch * batch_paths;
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
             let of_source = stream::PHOTON_POINTS + source as u64;

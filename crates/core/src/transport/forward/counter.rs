@@ -4,7 +4,9 @@ mod surfaces;
 
 use crate::optics::Side;
 use crate::rng::{Points, Sampler, stream};
-use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, RowReach, SensorId, SourceId};
+use crate::scene::{
+    CountedLight, FaceId, LightGroupId, MediumId, RowReach, SensorId, SourceId, Wavelengths,
+};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::controls::Blocks;
@@ -28,6 +30,7 @@ pub(super) struct PhotonCounter<'r, 's, O> {
     /// Flux of the current photon at throughput 1, lm or W.
     flux: f64,
     pub(super) source: SourceId,
+    pub(super) wavelengths: Wavelengths,
     /// Light groups of the source.
     light_groups: &'s [LightGroupId],
     pub(super) classed: bool,
@@ -66,6 +69,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
             readings,
             flux: 0.0,
             source: SourceId::new(0),
+            wavelengths: Wavelengths::All,
             light_groups: &[],
             classed: false,
             travel_start: TravelStart::Source,
@@ -87,8 +91,9 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let mut fresh = Sampler::for_path(self.run.seed, stream::PHOTONS, index);
         let mut sampler = points.lead(&mut fresh);
         let own = &scene.sources[source.index()];
-        let emitted = own.emit(scene, &mut sampler);
-        let flux = flux * own.spectral_weight(emitted.wavelength);
+        let wavelength = scene.photon_wavelength(source, self.wavelengths, &mut sampler);
+        let emitted = own.emit(scene, wavelength, &mut sampler);
+        let flux = flux * own.spectral_weight(wavelength.nm);
         self.flux = flux;
         self.source = source;
         self.light_groups = scene.light.of(source);

@@ -3,7 +3,7 @@
 //! Every photon carries flux; sensors sum it per cell. Flux absorbed by surfaces and media, escaped
 //! flux and cut flux are counted independently, so that the balance is a check, not an assumption.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, Wavelengths};
 use crate::transport::Layout;
 use crate::transport::forward::sensor_table::SensorTable;
 use crate::transport::forward::surprises::Surprises;
@@ -19,6 +19,16 @@ pub struct Forward<'s> {
     pub(crate) bounce_limit: u32,
     /// Paths per batch of each source.
     pub(crate) shares: Vec<u64>,
+    wavelengths: WavelengthSharing,
+}
+
+/// How the photons of a batch draw their wavelengths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum WavelengthSharing {
+    /// From all of a spectrum.
+    Free,
+    /// From those that the photons and records of a pass share.
+    ByPass,
 }
 
 impl<'s> Forward<'s> {
@@ -32,12 +42,27 @@ impl<'s> Forward<'s> {
             seed,
             bounce_limit,
             shares: shares(scene, batch_paths),
+            wavelengths: WavelengthSharing::Free,
+        }
+    }
+
+    /// The same with batches that are passes, whose photons meet records.
+    pub(crate) fn of_passes(self) -> Self {
+        Self { wavelengths: WavelengthSharing::ByPass, ..self }
+    }
+
+    /// The wavelengths of the photons of a batch.
+    pub(super) fn wavelengths(&self, batch: u64) -> Wavelengths {
+        match self.wavelengths {
+            WavelengthSharing::Free => Wavelengths::All,
+            WavelengthSharing::ByPass => Wavelengths::of_pass(self.seed, batch),
         }
     }
 
     /// The same with another number of paths a batch.
     pub(crate) fn with_paths(&self, batch_paths: u64) -> Self {
-        Self::new(self.scene, self.seed, self.bounce_limit, batch_paths)
+        let wavelengths = self.wavelengths;
+        Self { wavelengths, ..Self::new(self.scene, self.seed, self.bounce_limit, batch_paths) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A few paths to look at: their course and their end.
 
 use crate::rng::{Sampler, stream};
-use crate::scene::{FaceId, Ray, Scene, SensorId, SourceId};
+use crate::scene::{FaceId, Ray, Scene, SensorId, SourceId, Wavelengths};
 use crate::transport::forward::Forward;
 use crate::transport::{Event, Path};
 use glam::DVec3;
@@ -52,7 +52,8 @@ pub fn tracks(scene: &Scene, seed: u64, bounce_limit: u32, count: usize) -> Vec<
 fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
     let scene = forward.scene;
     let mut sampler = Sampler::for_path(forward.seed, stream::DRAWN, index as u64);
-    let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
+    let wavelength = scene.photon_wavelength(source, Wavelengths::All, &mut sampler);
+    let emitted = scene.sources[source.index()].emit(scene, wavelength, &mut sampler);
     let (mut points, mut end) = (vec![emitted.ray.origin()], TrackEnd::Cut);
     let path = Path::emitted(scene, source, emitted);
     let mut see = |path: &Path, event: &Event<'_>| match event {

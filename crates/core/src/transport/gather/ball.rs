@@ -124,6 +124,7 @@ mod tests {
             ray: Ray::new(point, DVec3::Z),
             throughput: 1.0,
             wavelength: REFERENCE_WAVELENGTH,
+            band: 0,
             stokes: None,
             source: None,
             medium: scene.medium_in(&inside),

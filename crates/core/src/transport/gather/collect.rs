@@ -198,16 +198,21 @@ fn finish<'s>(facing: &MetInterface<'s>, side: Side) -> &'s Finish {
 }
 
 impl<'s> Collecting<'_, 's> {
+    /// Etendue of the path for light that its records take, mm² sr.
+    fn pair_etendue(&self, path: &Path) -> f64 {
+        self.etendue * self.gather.scene.pair_weight(path.band)
+    }
+
     /// A record for photons that a broad finish scatters into the gather path: docs/method.md, eq. (22).
     fn add_scattered(&mut self, at: PathAtFace<'_, 's>, side: Side) {
-        let PathAtFace { vertex, facing, .. } = at;
+        let PathAtFace { path, vertex, facing } = at;
         let finish = finish(&facing, side);
         if finish.width().is_none() && finish.radiance_chances(&facing.incidence).of(side) == 0.0 {
             return;
         }
         // L* of the leaving light, in the medium of the gather path.
         let index = facing.incidence.index_from;
-        let value = self.etendue * vertex.throughput / (index * index);
+        let value = self.pair_etendue(path) * vertex.throughput / (index * index);
         let kind = RecordKind::Scattered { finish, out: -vertex.dir };
         self.add(at, (side, Lobe::Diffuse), value, kind);
     }
@@ -215,7 +220,7 @@ impl<'s> Collecting<'_, 's> {
     /// A record for photons near the direction in which the gather path would continue:
     /// docs/method.md, eq. (15).
     fn add_along(&mut self, at: PathAtFace<'_, 's>, side: Side) {
-        let PathAtFace { vertex, facing, .. } = at;
+        let PathAtFace { path, vertex, facing } = at;
         let finish = finish(&facing, side);
         let Some(out) = finish.scatter_toward(side, &facing.incidence, &mut self.sampler) else {
             return;
@@ -229,7 +234,7 @@ impl<'s> Collecting<'_, 's> {
             Side::Reflected => facing.incidence.index_from,
             Side::Transmitted => facing.incidence.index_to,
         };
-        let value = self.etendue * vertex.throughput * out.factor / (index * index);
+        let value = self.pair_etendue(path) * vertex.throughput * out.factor / (index * index);
         self.add(at, (side, out.lobe), value, RecordKind::Along(-out.dir.normalize()));
     }
 
@@ -238,7 +243,8 @@ impl<'s> Collecting<'_, 's> {
         let Gather { scene, surfaces, .. } = self.gather;
         let &Collision { point, dir, medium, scattering, throughput, .. } = collision;
         let index = scene.media[medium.index()].index(path.wavelength);
-        let value = self.etendue * throughput / (index * index * scattering.coefficient());
+        let value =
+            self.pair_etendue(path) * throughput / (index * index * scattering.coefficient());
         let turn = self.sampler.pair(Dimension::GatherPosition);
         let ball = clipped_ball(scene, path, point, self.window, turn);
         let merged = self.merged_record((dir, Lobe::Diffuse), None);
@@ -311,6 +317,10 @@ impl<'s> Collecting<'_, 's> {
                 merged,
             });
         }
-        RecordPath { place: self.found.paths.len() as u32 - 1, depth: path.depth + 1 }
+        RecordPath {
+            place: self.found.paths.len() as u32 - 1,
+            depth: path.depth + 1,
+            band: path.band,
+        }
     }
 }

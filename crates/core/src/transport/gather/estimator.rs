@@ -6,7 +6,7 @@ use crate::transport::backward::paths::Backward;
 use crate::transport::connect::vertex::scatters;
 use crate::transport::gather::bias::Judged;
 use crate::transport::gather::records::Records;
-use crate::transport::gather::settings::{GatherSettings, SensorGroup};
+use crate::transport::gather::settings::{GatherSettings, SensorGroup, WAVE_PASSES};
 use crate::transport::gather::shares::MergedRecord;
 use crate::transport::gather::surfaces::SurfaceNumbers;
 use crate::transport::gather::watched::WatchedLegs;
@@ -87,6 +87,12 @@ impl<'s> Gather<'s> {
             settings,
             merging: None,
         }
+    }
+
+    /// Passes that share photons and records. With spectra one: passes of a block would have to share wavelengths, and their spread would not
+    /// contain the scatter by wavelength.
+    pub(crate) fn passes_together(&self) -> u64 {
+        if self.scene.is_spectral() { 1 } else { WAVE_PASSES }
     }
 
     /// Gather paths of a pass from all of its sensors.

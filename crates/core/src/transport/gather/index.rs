@@ -9,6 +9,7 @@
 mod tests;
 
 use crate::transport::gather::coverage::HEIGHT;
+use crate::transport::gather::filter::Filter;
 use crate::transport::gather::surfaces::Slot;
 use crate::transport::stop::Pace;
 use crate::transport::window::Window;
@@ -26,8 +27,6 @@ const DIRECTION_CELL: f64 = 4.0;
 pub(crate) const TOGETHER: usize = 64;
 /// Entries that are compared with a photon together.
 const BLOCK: usize = 8;
-/// Bits of the filter for each entry of an index.
-const FILTER_BITS: usize = 4;
 /// Single-precision error in the distance of two points, relative to their coordinates: a few units
 /// of 2^-24 each.
 const SINGLE_ROUNDING: f64 = 1e-6;
@@ -39,6 +38,8 @@ pub(crate) struct Indexed {
     pub(crate) record: u32,
     /// The smooth surface it is on.
     pub(crate) surface: Slot,
+    /// The band of its wavelength.
+    pub(crate) band: u32,
     /// Position, mm.
     pub(crate) point: DVec3,
     /// Unit normal of the surface; `None` within a medium, where the window is a ball.
@@ -53,6 +54,8 @@ pub(crate) struct Indexed {
 pub struct PhotonKey {
     /// The smooth surface it is on.
     pub surface: Slot,
+    /// The band of its wavelength.
+    pub band: u32,
     /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel.
@@ -155,7 +158,7 @@ impl Index {
             }
         }
         let mask = placed.len().div_ceil(BLOCK).next_power_of_two() as u64 - 1;
-        let filter = Filter::new(&placed, pace)?;
+        let filter = Filter::new(placed.iter().map(|(hash, _)| *hash), pace)?;
         let (starts, entries) = sorted(placed, mask, pace)?;
         let reach = ball(window);
         let point_reach = reach + SINGLE_ROUNDING * (farthest + reach);
@@ -173,8 +176,8 @@ impl Index {
 
     /// Whether there may be records near a photon.
     #[inline(always)]
-    pub(crate) fn may_hold(&self, surface: Slot, point: DVec3, dir: DVec3) -> bool {
-        !self.entries.is_empty() && self.filter.may_hold(self.lattice.hash(surface, point, dir))
+    pub(crate) fn may_hold(&self, photon: &PhotonKey) -> bool {
+        !self.entries.is_empty() && self.filter.may_hold(self.lattice.hash(photon))
     }
 
     /// Visits the records that each of some photons may belong to, each once, photon by photon.
@@ -185,7 +188,7 @@ impl Index {
             return;
         }
         let keyed = photons.iter().map(|key| {
-            let hash = self.lattice.hash(key.surface, key.point, key.dir);
+            let hash = self.lattice.hash(key);
             let place = (hash & self.mask) as usize;
             (tag(hash), self.starts[place] as usize..self.starts[place + 1] as usize)
         });
@@ -250,44 +253,6 @@ fn sorted(
     Some((starts, entries))
 }
 
-/// A Bloom filter (Bloom, Commun. ACM 13 (1970) 422) of cells. The bits of a cell share a word, so
-/// a query costs one access.
-#[derive(Debug)]
-struct Filter {
-    /// Their number is a power of two.
-    words: Vec<u64>,
-}
-
-impl Filter {
-    /// `None` if it was stopped.
-    fn new(cells: &[(u64, IndexEntry)], pace: &Pace<'_>) -> Option<Self> {
-        let bits = (FILTER_BITS * cells.len()).next_power_of_two();
-        let mut words = vec![0; bits.div_ceil(64)];
-        for &(hash, _) in cells {
-            let (word, bits) = Self::place(hash, words.len());
-            words[word] |= bits;
-            if pace.spend(1).is_break() {
-                return None;
-            }
-        }
-        Some(Self { words })
-    }
-
-    /// The word of a cell, out of `words`, and its bits.
-    #[inline(always)]
-    fn place(hash: u64, words: usize) -> (usize, u64) {
-        let bit = |from: u32| 1u64 << ((hash >> from) & 63);
-        // Bits that the buckets do not use come first: the filter is finer than they are.
-        ((hash >> 26) as usize & (words - 1), bit(46) | bit(52) | bit(58))
-    }
-
-    #[inline(always)]
-    fn may_hold(&self, hash: u64) -> bool {
-        let (word, bits) = Self::place(hash, self.words.len());
-        self.words[word] & bits == bits
-    }
-}
-
 /// A division of positions and directions into cubes.
 #[derive(Debug, Clone, Copy)]
 struct Lattice {
@@ -308,8 +273,9 @@ impl Lattice {
     }
 
     #[inline(always)]
-    fn hash(&self, surface: Slot, point: DVec3, dir: DVec3) -> u64 {
-        hash(surface, cell_of(point, self.position_scale), cell_of(dir, self.direction_scale))
+    fn hash(&self, &PhotonKey { surface, band, point, dir }: &PhotonKey) -> u64 {
+        let cells = (cell_of(point, self.position_scale), cell_of(dir, self.direction_scale));
+        hash((surface, band), cells)
     }
 
     /// Visits the hashes of all cells in which photons of a record may lie.
@@ -327,7 +293,7 @@ impl Lattice {
                 }
             });
         }
-        let size = 1.0 / self.position_scale;
+        let (place, size) = ((record.surface, record.band), 1.0 / self.position_scale);
         // Half of the cell's extent along the normal, and the largest sag of the surface within the
         // window.
         let half = |normal: DVec3| 0.5 * size * normal.abs().element_sum() + HEIGHT * window.radius;
@@ -338,7 +304,7 @@ impl Lattice {
         each_near(record.point, ball(window), self.position_scale, |cell| {
             let middle = DVec3::from(cell.map(f64::from)) * size;
             if is_near(middle) {
-                directions.iter().for_each(|dir| visit(hash(record.surface, cell, *dir)));
+                directions.iter().for_each(|dir| visit(hash(place, (cell, *dir))));
             }
         });
     }
@@ -390,9 +356,9 @@ fn tag(hash: u64) -> u32 {
 /// A well mixed hash of a cell on a surface (multiply and fold, after Steele, Lea & Flood's
 /// `SplitMix64`).
 #[inline]
-fn hash(surface: Slot, position: Cell, direction: Cell) -> u64 {
+fn hash((surface, band): (Slot, u32), (position, direction): (Cell, Cell)) -> u64 {
     let pair = |a: i32, b: i32| u64::from(a as u32) << 32 | u64::from(b as u32);
-    let mut key = u64::from(surface);
+    let mut key = u64::from(surface) ^ u64::from(band).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     for word in [
         pair(position[0], position[1]),
         pair(position[2], direction[0]),

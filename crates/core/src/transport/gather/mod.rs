@@ -9,6 +9,7 @@ pub mod contribution;
 mod coverage;
 mod cut_cone;
 pub(crate) mod estimator;
+mod filter;
 pub mod index;
 pub mod kernel;
 pub(crate) mod merged;

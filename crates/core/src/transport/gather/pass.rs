@@ -11,7 +11,7 @@
 //! everything counts by its weight (`merged`).
 
 use crate::rng::{Numbers, Points, Sampler, stream};
-use crate::scene::{Arrival, SensorId};
+use crate::scene::{Arrival, SensorId, Wavelengths};
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::connect::passage::{PassedRecords, RecordPlaces};
 use crate::transport::connect::vertex::Turns;
@@ -83,6 +83,7 @@ impl<'s> Gather<'s> {
         (orders, mut met): (&mut [Readings; ORDERS], Option<&mut Readings>),
         found: &mut EndedPaths<'s>,
     ) -> Option<()> {
+        let wavelengths = Wavelengths::of_pass(self.seed, pass.batch);
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, pass.batch);
         for (id, arrivals) in &self.sensors {
             let offset = id.index() as u64;
@@ -95,7 +96,7 @@ impl<'s> Gather<'s> {
                 }
                 let mut fresh = Sampler::for_path(self.seed, stream::GATHER + offset, index);
                 let mut sampler = points.lead(&mut fresh);
-                let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
+                let Some(arrival) = arrivals.draw_of(wavelengths, &mut sampler) else { continue };
                 let path = StartedPath { id: *id, index, arrival: &arrival, sampler };
                 let shared = met.as_deref_mut().map(|readings| (readings, &mut joints));
                 self.gather_path(path, (pass, task), (orders, shared), found);

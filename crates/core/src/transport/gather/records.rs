@@ -73,6 +73,8 @@ pub struct RecordPath {
     pub place: u32,
     /// Interfaces met and scatterings within media from the sensor to the record, including its own.
     pub depth: u32,
+    /// The band of its wavelength.
+    pub band: u32,
 }
 
 /// The photons that a record on a surface takes.
@@ -112,8 +114,14 @@ impl GatherRecord<'_> {
             }
             Self::Volume(VolumeRecord { medium, point, .. }) => (*medium, *point, None, None),
         };
-        let indexed =
-            Indexed { record: id as u32, surface, point, normal, dir: dir.unwrap_or(NO_DIRECTION) };
+        let indexed = Indexed {
+            record: id as u32,
+            surface,
+            band: self.path().band,
+            point,
+            normal,
+            dir: dir.unwrap_or(NO_DIRECTION),
+        };
         (indexed, dir)
     }
 }
@@ -165,12 +173,12 @@ impl<'s> Records<'s> {
 
     /// Whether a photon on a surface may belong to any record.
     #[inline(always)]
-    pub fn may_take(&self, surface: Slot, point: DVec3, dir: DVec3) -> bool {
-        let reach = &self.reach[surface as usize];
-        reach.positions.contains(point)
-            && reach.directions.contains(dir)
-            && (self.along.may_hold(surface, point, dir)
-                || self.scattered.may_hold(surface, point, NO_DIRECTION))
+    pub fn may_take(&self, photon: &PhotonKey) -> bool {
+        let reach = &self.reach[photon.surface as usize];
+        reach.positions.contains(photon.point)
+            && reach.directions.contains(photon.dir)
+            && (self.along.may_hold(photon)
+                || self.scattered.may_hold(&PhotonKey { dir: NO_DIRECTION, ..*photon }))
     }
 
     /// Visits the records that each of some photons may belong to, each once: photon by photon

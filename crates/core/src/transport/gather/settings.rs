@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, SQRT_2};
 use std::fmt;
 
-/// Passes of a wave, whose photons meet the records of all of them.
+/// Passes of a wave, after which a run may end. Without spectra its photons meet the records of all of them.
 pub(crate) const WAVE_PASSES: u64 = 4;
 /// Radius of the first window over the inradius of the guide, 1 (measured on prototypes; docs/method.md).
 const RADIUS_PER_INRADIUS: f64 = 0.3;

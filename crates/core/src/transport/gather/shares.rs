@@ -132,12 +132,13 @@ impl MergedRecord<'_> {
         let to_source = photon
             .to_source
             .unwrap_or_else(|| backward.joined_to_source(sensor, turn, &photon.start));
+        let pairs = backward.scene.pair_weight_of(photon.start.source);
         let etendues = Etendues::new(
             [photon.etendue, self.gather],
             backward.emitters.meets(photon.start.source),
             [to_sensor, to_source],
-            self.passed + own + beyond,
+            (self.passed + own + beyond) / pairs,
         );
-        etendues.share_of_pair(own, backward.sharing)
+        etendues.share_of_pair(own / pairs, backward.sharing)
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Photons that may belong to records are buffered and looked up together.
 
-use crate::optics::{FinishModel, Incidence, REFERENCE_WAVELENGTH, Spread};
+use crate::optics::{FinishModel, Incidence, Spread};
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, RowReach, Scene, SourceId, Surface, Visibility};
 use crate::transport::backward::mix::MergedPhoton;
@@ -47,6 +47,8 @@ pub(crate) struct PhotonStream<'p, 's> {
 #[derive(Debug, Clone, Copy)]
 struct Passing {
     at: PhotonPlace,
+    /// Wavelength, nm.
+    wavelength: f64,
     /// Flux, lm or W.
     flux: f64,
     depth: u32,
@@ -62,8 +64,6 @@ enum PhotonPlace {
         toward: Toward,
         /// The media before and behind it.
         media: [MediumId; 2],
-        /// Wavelength, nm.
-        wavelength: f64,
     },
     /// Within a medium, before it is scattered.
     Medium,
@@ -107,11 +107,11 @@ impl<'p, 's> PhotonStream<'p, 's> {
     ) {
         match event {
             Event::Start(&Emergence { flux, source, .. }) => self.photon = Photon { flux, source },
-            Event::Arrive(vertex) if self.may_take(vertex) => {
+            Event::Arrive(vertex) if self.may_take(path, vertex) => {
                 self.merged.extend(merged(vertex.dir));
                 self.take(path, vertex);
             }
-            Event::Collide(collision) if self.may_take_within(collision) => {
+            Event::Collide(collision) if self.may_take_within(path, collision) => {
                 self.merged.extend(merged(collision.dir));
                 self.collide(path, collision);
             }
@@ -173,10 +173,15 @@ impl<'p, 's> PhotonStream<'p, 's> {
 
     /// Whether there may be records for a photon.
     #[inline(always)]
-    fn may_take(&self, vertex: &Vertex<'_>) -> bool {
-        let surface = self.gather.surfaces.of(vertex.interface.acting.prim);
+    fn may_take(&self, path: &Path, vertex: &Vertex<'_>) -> bool {
         vertex.interface.visibility == Visibility::Visible
-            && self.waiting.records.may_take(surface, vertex.point, vertex.dir)
+            && self.waiting.records.may_take(&self.key(path, vertex))
+    }
+
+    #[inline(always)]
+    fn key(&self, path: &Path, vertex: &Vertex<'_>) -> PhotonKey {
+        let surface = self.gather.surfaces.of(vertex.interface.acting.prim);
+        PhotonKey { surface, band: path.band, point: vertex.point, dir: vertex.dir }
     }
 
     /// Takes a photon that is to be looked up.
@@ -184,28 +189,31 @@ impl<'p, 's> PhotonStream<'p, 's> {
     fn take(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let interface = vertex.interface;
         let PrimHit { prim, toward, .. } = *interface.acting;
-        let (surface, media) = (self.gather.surfaces.of(prim), [interface.from, interface.to]);
-        let key = PhotonKey { surface, point: vertex.point, dir: vertex.dir };
-        let at = PhotonPlace::Surface { prim, toward, media, wavelength: path.wavelength };
-        self.push(path, key, at, vertex.throughput);
+        let media = [interface.from, interface.to];
+        let at = PhotonPlace::Surface { prim, toward, media };
+        self.push(path, self.key(path, vertex), at, vertex.throughput);
     }
 
-    fn may_take_within(&self, collision: &Collision<'_>) -> bool {
+    fn may_take_within(&self, path: &Path, collision: &Collision<'_>) -> bool {
+        self.waiting.records.may_take(&self.key_within(path, collision))
+    }
+
+    fn key_within(&self, path: &Path, collision: &Collision<'_>) -> PhotonKey {
         let &Collision { point, dir, medium, .. } = collision;
-        self.waiting.records.may_take(self.gather.surfaces.of_medium(medium), point, dir)
+        PhotonKey { surface: self.gather.surfaces.of_medium(medium), band: path.band, point, dir }
     }
 
     fn collide(&mut self, path: &Path, collision: &Collision<'_>) {
-        let &Collision { point, dir, medium, throughput, .. } = collision;
-        let surface = self.gather.surfaces.of_medium(medium);
-        self.push(path, PhotonKey { surface, point, dir }, PhotonPlace::Medium, throughput);
+        let key = self.key_within(path, collision);
+        self.push(path, key, PhotonPlace::Medium, collision.throughput);
     }
 
     fn push(&mut self, path: &Path, key: PhotonKey, at: PhotonPlace, throughput: f64) {
         self.keys.push(key);
         let Photon { flux, source } = self.photon;
         let flux = flux * throughput;
-        self.passing.push(Passing { at, flux, depth: path.depth, source });
+        let &Path { wavelength, depth, .. } = path;
+        self.passing.push(Passing { at, wavelength, flux, depth, source });
         if self.passing.len() == TOGETHER {
             self.look_up();
         }
@@ -226,6 +234,9 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 return;
             }
             let photon = &passing[index];
+            if record.path().band != keys[index].band {
+                return;
+            }
             if known.as_ref().is_some_and(|(last, _)| *last != index) {
                 known = None;
             }
@@ -250,8 +261,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 flux: photon.flux * share * weight,
                 depth,
                 source: photon.source,
-                // Estimators with records are refused where light has a spectrum.
-                wavelength: REFERENCE_WAVELENGTH,
+                wavelength: photon.wavelength,
             });
             counts.count_pair((scene, layout), (*sensor, cells), [*pass, self.current], light);
         });
@@ -270,10 +280,11 @@ fn records_have_grain(scene: &Scene) -> bool {
 
 /// A photon in the form that records take, with the grain of its surface if it `has_grain`.
 fn arriving((scene, has_grain): (&Scene, bool), key: &PhotonKey, photon: &Passing) -> PhotonHit {
-    let &PhotonKey { surface, point, dir } = key;
+    let &PhotonKey { surface, point, dir, .. } = key;
+    let wavelength = photon.wavelength;
     match photon.at {
         PhotonPlace::Medium => PhotonHit::Volume(VolumeHit { medium: surface, point, dir }),
-        PhotonPlace::Surface { prim, toward, media: [from, to], wavelength } => {
+        PhotonPlace::Surface { prim, toward, media: [from, to] } => {
             let index = |medium: MediumId| scene.media[medium.index()].index(wavelength);
             let outward = scene.normal(prim, point);
             let incidence = Incidence {

@@ -20,11 +20,9 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Blocks of passes, each like one of a run, from which gathering is judged. Fewer passes would contain more pairs, but give a less
+/// Passes from which gathering is judged, in blocks like those of a run. Fewer would contain more pairs, but give a less
 /// accurate variance.
-const TRIED_BLOCKS: u64 = 2;
-/// Passes in these blocks.
-const TRIED_PASSES: u64 = TRIED_BLOCKS * WAVE_PASSES;
+const TRIED_PASSES: u64 = 2 * WAVE_PASSES;
 /// Variance of E0 over that of E1 where pairs of the position-and-angle estimate limit both, 1 (`kernel`); it is smaller for
 /// the other estimates. The few pairs of a pilot give the variance of E1 much more accurately.
 const FOURTH_ORDER: f64 = 7.0;
@@ -36,8 +34,6 @@ const PER_GATHER_PATH: f64 = 1.0;
 const CERTAIN: f64 = 3.0;
 /// Most work of pairs over the rest of a pass, 1: with more of them, a larger pass hardly gains.
 const MOST_PAIR_WORK: f64 = 2.0;
-/// Passes of a run whose records each photon meets, 1.
-const CROSSED: f64 = WAVE_PASSES as f64;
 /// Segments of photon paths of a pass that measures the work of a whole one.
 const PROBED_SEGMENTS: f64 = 1e5;
 
@@ -76,22 +72,24 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
     let by_records = all * work::of_recorded_path(f64::from(settings.depth) + 1.0);
     let part = (effort / TRIED_PASSES as f64 / (by_photons + by_records)).min(1.0);
     let scaled = |count: u64| scaled(count, part);
-    let forward = photons_of(trials, scaled(settings.photons));
+    let forward = photons_of(trials, scaled(settings.photons)).of_passes();
     let own = GatherSettings {
         gather_paths: scaled(settings.gather_paths),
         schedule: Schedule::Stages,
         ..settings
     };
     let gather = Gather::new(scene, sensors, plan.seed ^ SEED, own);
+    let together = gather.passes_together();
     let block =
-        |block| TriedBlock::trace((&gather, &forward), (block * WAVE_PASSES, WAVE_PASSES), signal);
-    let blocks: Option<Vec<TriedBlock>> = (0..TRIED_BLOCKS).into_par_iter().map(block).collect();
+        |block| TriedBlock::trace((&gather, &forward), (block * together, together), signal);
+    let blocks = (0..TRIED_PASSES / together).into_par_iter().map(block);
+    let blocks: Option<Vec<TriedBlock>> = blocks.collect();
     let blocks = blocks?;
     let [second, values, bias] = [[1.0, 0.0], [0.0, 1.0], [USUAL_SHARE, -USUAL_SHARE]]
         .map(|factors| combined(&blocks, factors));
     let gathered = gather.batch_paths(0);
     let works: Vec<PassWork> =
-        blocks.iter().map(|block| block.work_of_whole(gathered, part)).collect();
+        blocks.iter().map(|block| block.work_of_whole((gathered, together), part)).collect();
     let whole = PassWork::mean(&works);
     let is_given = plan.gather.photons.or(plan.gather.records).is_some();
     let size = if is_given { 1.0 } else { whole.size_for(pilot.pass_work) };
@@ -99,7 +97,8 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
     let seconds = 1e-9 * whole.of_size(size);
     let limit = |cells: usize| {
         let in_cell = settings.gather_paths as f64 / cells as f64;
-        PER_PHOTON / settings.photons as f64 + PER_GATHER_PATH / in_cell
+        let by_paths = PER_PHOTON / settings.photons as f64 + PER_GATHER_PATH / in_cell;
+        by_paths + scene.spectra.flux_variance()
     };
     // A few pairs can agree by chance, but the relative variance of a sum over a Poisson number of events of mean k is at
     // least 1/k: it is E[w²]/(k E[w]²). Without pairs, the gather paths themselves have met all light.
@@ -205,9 +204,9 @@ pub(crate) fn pass_work(
     let seed = plan.seed ^ SEED;
     let alone = Gather::new(gather.scene, &sensors, seed, settings);
     let probe = if gather.merging.is_some() { alone.merged(plan.bounce_limit) } else { alone };
-    let forward = Forward::new(gather.scene, seed, plan.bounce_limit, scaled(photons));
+    let forward = Forward::new(gather.scene, seed, plan.bounce_limit, scaled(photons)).of_passes();
     let block = TriedBlock::trace((&probe, &forward), (0, 1), signal)?;
-    Some(block.work_of_whole(probe.batch_paths(0), part))
+    Some(block.work_of_whole((probe.batch_paths(0), probe.passes_together()), part))
 }
 
 impl TriedBlock {
@@ -234,14 +233,14 @@ impl TriedBlock {
         (!pace.is_stopped()).then_some(Self { photons, segments, passes, work })
     }
 
-    /// Work of a pass of a whole block, scaled up from this one, whose passes traced this many gather paths and a `part` of
-    /// the photons each.
-    fn work_of_whole(&self, gather_paths: u64, part: f64) -> PassWork {
+    /// Work of a pass of a whole block of passes `together`, scaled up from this one, whose passes traced this many gather
+    /// paths and a `part` of the photons each.
+    fn work_of_whole(&self, (gather_paths, together): (u64, u64), part: f64) -> PassWork {
         let RecordWork { records, look_ups, near, pairs } = self.work;
         let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
         let passes = self.passes.len() as f64;
         let all = part * passes;
-        let all_pairs = all * all / CROSSED;
+        let all_pairs = all * all / together as f64;
         let near_of_whole = grown(near, all_pairs).min(grown(self.segments, all));
         // The filter is built for the records, so its errors scale with the photons alone.
         let single = RecordWork {

@@ -100,10 +100,11 @@ impl<'s> Run<'s> {
         prepared.extend(gathered.into_iter().map(|(_, prepared)| prepared));
         let block_batches = prepared.iter().map(Prepared::block_batches).max().unwrap_or(1);
         let has_passes = prepared.iter().any(|one| one.portion() == Portion::Pass);
+        let forward = Forward::new(scene, plan.seed, plan.bounce_limit, photons);
         Some(Self {
             estimators,
             choices,
-            forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
+            forward: if has_passes { forward.of_passes() } else { forward },
             photons: Series::default(),
             others: prepared.into_iter().map(|one| (one, Series::default())).collect(),
             block_batches,

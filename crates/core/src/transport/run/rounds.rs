@@ -2,7 +2,7 @@
 //!
 //! A batch holds photon paths and, where sensors are estimated backward or by gathering, gather
 //! paths. A thread traces one batch at a time or, with gathering, a block of passes that share photons
-//! and records. A wave is one batch of each group, or a block of passes; waves are traced in pieces. A signal stops a run at any time: the batches before the first unfinished one then
+//! and records. A wave is one batch of each group, or four passes; waves are traced in pieces. A signal stops a run at any time: the batches before the first unfinished one then
 //! count, so that a run of that many batches reproduces it.
 
 use crate::plan::Estimator;

@@ -290,7 +290,8 @@ mod tests {
     use crate::rng::Sampler;
     use crate::scene::shape::{Cylinder, Flat, Region};
     use crate::scene::{
-        Builder, Emission, EmitSide, EmittedRay, FittedLight, LuminousOpening, Ray, RaySet,
+        Builder, DrawnWavelength, Emission, EmitSide, EmittedRay, FittedLight, LuminousOpening,
+        Ray, RaySet,
     };
     use lumiduct_base::math::Frame;
     use lumiduct_base::units::FluxUnit;
@@ -351,7 +352,9 @@ mod tests {
             (0..scene.sources.len()).flat_map(|one| (0..200).map(move |i| (one, i)))
         {
             let id = SourceId::new(source);
-            let emitted = scene.sources[source].emit(&scene, &mut Sampler::for_path(3, 0, index));
+            let mut sampler = Sampler::for_path(3, 0, index);
+            let wavelength = DrawnWavelength::REFERENCE;
+            let emitted = scene.sources[source].emit(&scene, wavelength, &mut sampler);
             let shape = emitted.shape;
             let photon = Path::emitted(&scene, id, emitted);
             let told = emitters.emitted(id, &photon, shape);

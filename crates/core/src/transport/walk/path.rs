@@ -13,6 +13,8 @@ pub struct Path {
     pub throughput: f64,
     /// Wavelength, nm.
     pub wavelength: f64,
+    /// Band of the wavelength, as of a [`DrawnWavelength`](crate::scene::DrawnWavelength).
+    pub band: u32,
     /// Polarisation, if that is followed.
     pub stokes: Option<Stokes>,
     /// Source of its light; unknown for a gather path.
@@ -34,7 +36,8 @@ impl Path {
         Self {
             ray: emitted.ray,
             throughput: 1.0,
-            wavelength: emitted.wavelength,
+            wavelength: emitted.wavelength.nm,
+            band: emitted.wavelength.band,
             stokes: unpolarised(scene),
             source: Some(source),
             medium: scene.medium_in(&emitted.inside),
@@ -49,7 +52,8 @@ impl Path {
         Self {
             ray: arrival.ray,
             throughput: 1.0,
-            wavelength: arrival.wavelength,
+            wavelength: arrival.wavelength.nm,
+            band: arrival.wavelength.band,
             stokes: unpolarised(scene),
             source: None,
             medium: scene.medium_in(&arrival.inside),

@@ -14,9 +14,14 @@ fn records(count: u32) -> Vec<Indexed> {
             let normal = DVec3::new(cos, sin, 0.0);
             let point = 5.0 * normal + 20.0 * along * DVec3::Z;
             let dir = uniform_sphere(sampler.pair(Dimension::GatherDirection));
-            Indexed { record, surface: 0, point, normal: Some(normal), dir }
+            Indexed { record, surface: 0, band: 0, point, normal: Some(normal), dir }
         })
         .collect()
+}
+
+/// A photon in the place of a record.
+fn key_of(&Indexed { surface, band, point, dir, .. }: &Indexed) -> PhotonKey {
+    PhotonKey { surface, band, point, dir }
 }
 
 fn indexed(records: impl Iterator<Item = Indexed>, window: Window) -> Index {
@@ -36,12 +41,14 @@ fn a_look_up_finds_each_record_that_a_scan_finds_once() {
         };
         let scanned: Vec<u32> = all.iter().filter(near).map(|record| record.record).collect();
         let mut found = Vec::new();
-        let Indexed { surface, point, dir, .. } = photon;
-        index.visit(&[PhotonKey { surface, point, dir }], |_, record| found.push(record));
+        let key = key_of(&photon);
+        index.visit(&[key], |_, record| found.push(record));
+        let other = PhotonKey { band: 1, ..key };
+        index.visit(&[other], |_, record| panic!("{record} takes light of another band"));
         found.sort_unstable();
         assert!(found.windows(2).all(|two| two[0] != two[1]), "{found:?}");
         assert!(scanned.iter().all(|record| found.contains(record)), "{scanned:?}, {found:?}");
-        assert!(scanned.is_empty() || index.may_hold(0, photon.point, photon.dir));
+        assert!(scanned.is_empty() || index.may_hold(&key));
         pairs += scanned.len();
     }
     assert!(pairs > 1000, "{pairs}");
@@ -56,10 +63,9 @@ fn a_filter_lets_few_photons_through_that_meet_nothing() {
     for record in &records {
         index.lattice.each_cell(record, window, |hash| _ = cells.insert(hash));
     }
-    let is_alone =
-        |own: &&Indexed| !cells.contains(&index.lattice.hash(own.surface, own.point, own.dir));
+    let is_alone = |own: &&Indexed| !cells.contains(&index.lattice.hash(&key_of(own)));
     let alone: Vec<&Indexed> = strangers.iter().filter(is_alone).collect();
-    let through = alone.iter().filter(|own| index.may_hold(0, own.point, own.dir)).count();
+    let through = alone.iter().filter(|own| index.may_hold(&key_of(own))).count();
     assert!(alone.len() > strangers.len() / 2, "{}", alone.len());
     // Three bits of 64 in a word with at least FILTER_BITS for each entry: (1 - e^(-3/4))^3, Bloom, CACM 13 (1970) 422.
     assert!(through < alone.len() / 6, "{through} of {}", alone.len());

@@ -76,6 +76,7 @@ fn start((scene, inside): (&Scene, &Inside), ray: Ray) -> Path {
         ray,
         throughput: 1.0,
         wavelength: REFERENCE_WAVELENGTH,
+        band: 0,
         stokes: None,
         source: None,
         medium: scene.medium_in(inside),

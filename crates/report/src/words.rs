@@ -63,6 +63,9 @@ pub(crate) fn quantity(measure: &Measure) -> String {
     if is_boundless(measure) {
         return BOUNDLESS.into();
     }
+    if is_undefined(measure) {
+        return format!("undefined{}", remark(measure.status));
+    }
     // A bias well below the noise is not shown.
     let bias = measure
         .bias
@@ -79,11 +82,16 @@ fn is_boundless(measure: &Measure) -> bool {
     measure.unit == "deg" && measure.value >= 360.0
 }
 
+/// Whether a measure has no value.
+fn is_undefined(measure: &Measure) -> bool {
+    measure.status == Status::Undefined && !measure.value.is_finite()
+}
+
 /// Value with standard error, bias, and remark; each may be empty.
 pub(crate) fn measure_cells(measure: &Measure) -> [String; 3] {
     let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
     // The error of zero needs words.
-    if measure.status == Status::NoSignal || is_boundless(measure) {
+    if measure.status == Status::NoSignal || is_boundless(measure) || is_undefined(measure) {
         return [quantity(measure), String::new(), String::new()];
     }
     [

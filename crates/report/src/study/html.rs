@@ -20,8 +20,10 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     let mut plots = Plots::default();
     let facts = &report.facts;
     let [before, after] = parts(report).map(|parts| parts.into_iter().map(folded));
-    let drawn = figures.iter().flat_map(|figure| blocks(report, figure, &mut plots)).collect();
-    let pictures = PagePart { title: "Plots".into(), blocks: drawn };
+    let drawn: Vec<Block> =
+        figures.iter().flat_map(|figure| blocks(report, figure, &mut plots)).collect();
+    // Where all parameters are choices there is nothing to plot.
+    let pictures = (!drawn.is_empty()).then(|| PagePart { title: "Plots".into(), blocks: drawn });
     let page = Page {
         title: facts.title.clone(),
         masthead: masthead(facts.whole_project().as_ref()),
@@ -32,7 +34,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
             (true, true) => Standing::Open,
             (false, true) => Standing::Good,
         },
-        parts: before.chain([pictures]).chain(after).collect(),
+        parts: before.chain(pictures).chain(after).collect(),
         footer: format!("lumiduct {}, study {}", facts.version, facts.name),
     };
     render(&page, &plots)

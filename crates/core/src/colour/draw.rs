@@ -1,5 +1,6 @@
 //! Wavelengths drawn from a spectrum.
 
+use crate::colour::chromaticity::Chromaticity;
 use crate::colour::observer::{colour_matching, luminous_efficiency};
 use crate::colour::spectrum::Spectrum;
 use glam::{DVec2, DVec3};
@@ -125,10 +126,10 @@ impl SpectralDraw {
             drawn.sum::<DVec3>() / f64::from(bands)
         };
         let mean = DVec3::from_array(self.spectrum.tristimulus());
+        // Without light there is no colour, so that such bands are too few.
         let coordinates = |light: DVec3| {
-            let [x, y, z] = light.to_array();
-            let sum = x + 15.0 * y + 3.0 * z;
-            DVec2::new(4.0 * x, 9.0 * y) / sum
+            Chromaticity::from_tristimulus(light.to_array())
+                .map_or(DVec2::NAN, |colour| DVec2::from_array(colour.uv_1976()))
         };
         let offsets = (0..OFFSETS).map(|place| (f64::from(place) + 0.5) / f64::from(OFFSETS));
         let squares = offsets.map(stimuli).map(|light| {

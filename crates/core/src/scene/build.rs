@@ -10,7 +10,7 @@ use crate::scene::relief::{PatchCut, Relief, ReliefWall, Trim};
 use crate::scene::{
     Accel, COINCIDENCE, Face, FaceId, FacePiece, FinishId, LightGroups, MediumId, MeshBody,
     NamedFinish, Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid,
-    SolidId, Source, SourceId, SourceSpectra,
+    SolidId, Source, SourceId, SourceSpectra, Surface,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -65,7 +65,7 @@ impl Builder {
             light: LightGroups::default(),
             sensors: Vec::new(),
             tolerance: 0.0,
-            accel: Accel::new(&[], 0, 0.0),
+            accel: Accel::new([0; 2], |_| Aabb::EMPTY, 0.0),
             convex: Vec::new(),
             loose: Vec::new(),
             legs: Vec::new(),
@@ -243,15 +243,20 @@ impl Builder {
     /// The scene, ready to be traced.
     pub fn build(self) -> Scene {
         let mut scene = self.scene;
-        let mut boxes: Vec<Aabb> = scene.patches.iter().map(|patch| patch.shape.bounds()).collect();
+        let patches = scene.patches.len();
+        let mut surfaces = patches;
         for body in &mut scene.meshes {
-            body.first = boxes.len();
-            boxes
-                .extend((0..body.mesh.triangle_count()).map(|triangle| body.mesh.bounds(triangle)));
+            body.first = surfaces;
+            surfaces += body.mesh.triangle_count();
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.spectra = SourceSpectra::new(&scene.sources);
-        scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
+        let bounds = |index| match scene.surface(PrimId::new(index)) {
+            Surface::Patch(patch) => patch.shape.bounds(),
+            Surface::Triangle(body, triangle) => body.mesh.bounds(triangle),
+        };
+        let reach = scene.bounds.largest_coordinate();
+        scene.accel = Accel::new([patches, surfaces - patches], bounds, reach);
         if let Accel::Scan(_) = scene.accel {
             let solids = (0..scene.solids.len()).map(SolidId::new);
             let room = ConvexSolids {

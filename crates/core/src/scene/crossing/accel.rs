@@ -19,13 +19,17 @@ pub(crate) enum Accel {
 }
 
 impl Accel {
-    /// A structure over `boxes`: the first `patches` belong to patches, the others to triangles.
+    /// A structure over this many patches and triangles with these boxes, patches first.
     /// Ray origins have coordinates up to `largest_coordinate`, mm.
-    pub(crate) fn new(boxes: &[Aabb], patches: usize, largest_coordinate: f64) -> Self {
-        if boxes.len() == patches && patches <= SCAN_LIMIT {
+    pub(crate) fn new(
+        [patches, triangles]: [usize; 2],
+        bounds: impl Fn(usize) -> Aabb,
+        largest_coordinate: f64,
+    ) -> Self {
+        if triangles == 0 && patches <= SCAN_LIMIT {
             return Self::Scan(patches);
         }
-        Self::Tree(Tree::over(boxes, largest_coordinate))
+        Self::Tree(Tree::over(patches + triangles, bounds, largest_coordinate))
     }
 
     /// Calls `visit` with the index of every surface whose box the ray meets before the smallest distance that `visit` has

@@ -1,7 +1,7 @@
 //! Which triangles share an edge, and which are connected.
 
 /// A triangle's side of an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HalfEdge {
     /// The smaller index of the two vertices.
     pub low: u32,
@@ -14,6 +14,12 @@ pub struct HalfEdge {
 }
 
 impl HalfEdge {
+    /// Its place among all: by edge, triangle and corner, in one number that is compared at once.
+    fn order(&self) -> u128 {
+        let edge = u128::from(self.low) << 32 | u128::from(self.high);
+        edge << 64 | u128::from(self.triangle) << 8 | u128::from(self.corner)
+    }
+
     /// Whether the triangle walks from `low` to `high`.
     pub(crate) fn is_upward(&self, triangles: &[[u32; 3]]) -> bool {
         triangles[self.triangle as usize][usize::from(self.corner)] == self.low
@@ -49,7 +55,7 @@ pub fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
             });
         }
     }
-    all.sort_unstable();
+    all.sort_unstable_by_key(HalfEdge::order);
     all
 }
 

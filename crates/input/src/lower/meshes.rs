@@ -15,8 +15,12 @@ use lumiduct_files::mesh::{self, LengthUnit};
 const DRIFT_BOUNCES: u32 = 100;
 
 impl Context<'_> {
-    /// Reads a mesh; problems with it are noted at its key.
-    pub(super) fn read_mesh(&mut self, spec: &MeshSpec, key: &Key) -> Option<TriangleMesh> {
+    /// Reads a mesh and examines it; problems with it are noted at its key.
+    pub(super) fn read_mesh(
+        &mut self,
+        spec: &MeshSpec,
+        key: &Key,
+    ) -> Option<(TriangleMesh, MeshHealth)> {
         let file = key.field("file");
         self.may_build(&file)?;
         let path = self.places.folder(&file).join(&spec.file);
@@ -37,12 +41,13 @@ impl Context<'_> {
         if spec.normals == MeshNormals::Facet {
             mesh.normals = None;
         }
-        self.examine(spec, &health(&mesh), &file);
-        Some(mesh)
+        let health = health(&mesh);
+        self.note_defects(spec, &health, &file);
+        Some((mesh, health))
     }
 
     /// Notes defects and coarseness of a mesh.
-    fn examine(&mut self, spec: &MeshSpec, health: &MeshHealth, key: &Key) {
+    fn note_defects(&mut self, spec: &MeshSpec, health: &MeshHealth, key: &Key) {
         let name = &spec.file;
         let defects = [
             (health.open_edges, "open edges: it is not closed"),

@@ -11,7 +11,6 @@ use crate::spec::sweep::{
 };
 use indexmap::IndexMap;
 use lumiduct_base::math::{Aabb, Frame};
-use lumiduct_base::mesh::health;
 use lumiduct_core::scene::shape::{Shape, Sphere};
 use lumiduct_core::scene::{FaceId, FaceSpec, FinishId, MediumId, Owner, Solid};
 use std::f64::consts::PI;
@@ -41,10 +40,10 @@ impl<'a> Context<'a> {
             }))
         };
         if let SolidSpec::Mesh(spec) = solid {
-            let mesh = self.read_mesh(&spec.shape, key)?;
+            let (mesh, health) = self.read_mesh(&spec.shape, key)?;
             let finishes = self.mesh_finishes(name, &mesh, &declared, &key.field("faces"));
-            let (frame, volume) = (frame?, health(&mesh).signed_volume_mm3);
-            let id = add(self, Some(volume))?;
+            let frame = frame?;
+            let id = add(self, Some(health.signed_volume_mm3))?;
             self.add_mesh(name, id, &mesh, &finishes, &frame);
             return Some(());
         }

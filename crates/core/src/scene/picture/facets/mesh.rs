@@ -14,16 +14,15 @@ const GROWTH: f64 = 1.4;
 pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Triangulation {
     let mut cell = cell;
     loop {
-        let facets = joined(mesh, face, cell);
-        if facets.triangles.len() <= MOST_TRIANGLES {
+        if let Some(facets) = joined(mesh, face, cell) {
             return facets;
         }
         cell *= GROWTH;
     }
 }
 
-/// A face with all corners in a cube merged, and without the triangles that this collapses.
-fn joined(mesh: &Mesh, face: usize, cell: f64) -> Triangulation {
+/// A face with all corners in a cube merged, and without the triangles that this collapses; `None` if too many remain.
+fn joined(mesh: &Mesh, face: usize, cell: f64) -> Option<Triangulation> {
     let mut facets = Triangulation::default();
     let mut corner_of: BTreeMap<[i64; 3], usize> = BTreeMap::new();
     let mut known: BTreeSet<[usize; 3]> = BTreeSet::new();
@@ -42,8 +41,11 @@ fn joined(mesh: &Mesh, face: usize, cell: f64) -> Triangulation {
         if a != b && b != c && c != a && known.insert(sorted) {
             facets.triangles.push(corners);
         }
+        if facets.triangles.len() > MOST_TRIANGLES {
+            return None;
+        }
     }
-    facets
+    Some(facets)
 }
 
 fn cube(point: DVec3, cell: f64) -> [i64; 3] {

@@ -4,7 +4,6 @@ use crate::cli::console::print;
 use crate::cli::exit::fail;
 use clap::{Args, ValueEnum};
 use lumiduct_base::error::Error;
-use lumiduct_base::mesh::health;
 use lumiduct_files::mesh::{LengthUnit, MeshFormat, read};
 use lumiduct_report::mesh_report;
 use std::path::PathBuf;
@@ -49,7 +48,7 @@ pub(super) fn mesh(args: &MeshArgs) -> ExitCode {
         Ok(mesh) => mesh,
         Err(error) => return fail(&Error::Usage(format!("{name}: {error}"))),
     };
-    let health = health(&mesh);
+    let health = mesh.health();
     match print(&mesh_report(&name, &mesh, &health)) {
         Ok(()) if health.is_sound() => ExitCode::SUCCESS,
         Ok(()) => ExitCode::from(1),

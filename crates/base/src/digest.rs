@@ -1,6 +1,6 @@
 //! A digest to distinguish inputs: 64-bit FNV-1a (Fowler, Noll & Vo; draft-eastlake-fnv).
 
-use crate::mesh::TriangleMesh;
+use crate::mesh::{MeshAssembly, TriangleMesh};
 use glam::DVec3;
 use std::fmt;
 
@@ -21,8 +21,18 @@ impl Digest {
         self.add_bytes(piece);
     }
 
-    /// Adds everything read from a mesh.
-    pub fn add_mesh(&mut self, mesh: &TriangleMesh) {
+    /// Adds everything read from a file with meshes.
+    pub fn add_assembly(&mut self, assembly: &MeshAssembly) {
+        self.add_mesh(&assembly.mesh);
+        for copied in &assembly.copied {
+            self.add_mesh(&copied.body);
+            self.add_bytes(&copied.places.len().to_le_bytes());
+            let numbers = copied.places.iter().flat_map(|place| place.to_cols_array());
+            numbers.for_each(|number| self.add_bytes(&number.to_le_bytes()));
+        }
+    }
+
+    fn add_mesh(&mut self, mesh: &TriangleMesh) {
         self.add_bytes(&mesh.positions.len().to_le_bytes());
         mesh.positions.iter().for_each(|position| self.add_vector(*position));
         self.add_bytes(&mesh.triangles.len().to_le_bytes());

@@ -6,6 +6,7 @@
 use crate::upright::is_lit_from_above;
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
+use lumiduct_core::scene::mesh::MeshBody;
 use lumiduct_core::scene::{
     Face, FaceFacets, FaceId, Fineness, Owner, Scene, SensorKind, SourceId, Triangulation,
     shape_facets,
@@ -162,7 +163,7 @@ impl SceneDrawing {
 /// The box around everything that is not at infinity.
 fn solid_bounds(scene: &Scene) -> Aabb {
     let patches = scene.patches.iter().chain(&scene.ports).map(|patch| patch.shape.bounds());
-    let meshes = scene.meshes.iter().map(|body| body.bounds());
+    let meshes = scene.mesh_bodies().map(MeshBody::bounds);
     patches.chain(meshes).fold(Aabb::EMPTY, Aabb::union)
 }
 

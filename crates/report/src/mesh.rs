@@ -1,7 +1,7 @@
 //! The health of a mesh, as a page: what prevents its use as a solid, and how its facets affect
 //! light.
 
-use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, area_vector};
+use lumiduct_base::mesh::{CopiedBody, Defects, FaceSize, MeshAssembly, MeshHealth};
 use lumiduct_base::number::format_value;
 use std::fmt::Write;
 
@@ -12,14 +12,14 @@ const DRIFT_BOUNCES: [f64; 3] = [10.0, 100.0, 1000.0];
 const LOST: f64 = 0.3;
 
 /// The report on a mesh, lengths in mm.
-pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> String {
+pub fn mesh_report(name: &str, mesh: &MeshAssembly, health: &MeshHealth) -> String {
     let (bounds, number) = (mesh.bounds(), |value: f64| format_value(value));
     let size = bounds.max - bounds.min;
     let verdict = if health.is_sound() { "a closed solid" } else { "NOT a solid" };
     let mut text = format!(
         "{name}: {verdict}, {} triangles, {} vertices, {} connected\n\nbox     [{}, {}, {}] to [{}, {}, {}] mm, {} x {} x {} mm\n",
-        mesh.triangles.len(),
-        mesh.positions.len(),
+        mesh.triangle_count(),
+        mesh.vertex_count(),
         if health.shells == 1 {
             "all".to_owned()
         } else {
@@ -42,15 +42,17 @@ pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> Stri
         _ = writeln!(text, "        negative: inside out; flip the orientation of the triangles");
     }
     text.push_str("\nface                    triangles   area, mm²\n");
-    // In one pass: an OBJ file may have as many groups as triangles.
-    let mut shares = vec![(0_usize, 0.0); mesh.faces.len()];
-    for (triangle, face) in mesh.face_of.iter().enumerate() {
-        let (count, area) = &mut shares[*face as usize];
-        *count += 1;
-        *area += 0.5 * area_vector(mesh.corners(triangle)).length();
+    for (face, FaceSize { triangles, area_mm2 }) in mesh.faces() {
+        _ = writeln!(text, "{face:22} {triangles:>10}   {}", number(area_mm2));
     }
-    for (face, (count, area)) in mesh.faces.iter().zip(shares) {
-        _ = writeln!(text, "{face:22} {count:>10}   {}", number(area));
+    for CopiedBody { body, places } in &mesh.copied {
+        _ = writeln!(
+            text,
+            "\n{} copies share {} triangles of `{}`",
+            places.len(),
+            body.triangles.len(),
+            body.faces.join("`, `")
+        );
     }
     text.push_str("\nmust be none\n");
     defects(&mut text, "open edges", &health.open_edges);

@@ -1,6 +1,9 @@
 //! Collects triangles of any format, welds equal positions and refuses non-finite numbers.
 
-use crate::mesh::{MAX_COORDINATE_MM, MAX_TRIANGLES, TriangleMesh, UNNAMED_FACE, area_vector};
+use crate::mesh::{
+    CopiedBody, MAX_COORDINATE_MM, MAX_TRIANGLES, MeshAssembly, TriangleMesh, UNNAMED_FACE,
+    area_vector,
+};
 use glam::DVec3;
 use indexmap::IndexSet;
 use std::collections::HashMap;
@@ -75,15 +78,33 @@ impl MeshBuilder {
         Ok(())
     }
 
+    /// The vertices so far, mm.
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
     /// The mesh; corners without a normal get that of their facet if other corners have one.
     ///
     /// # Errors
     ///
     /// [`UnusableMesh::NoTriangles`] if none was added.
     pub fn finish(self) -> Result<TriangleMesh, UnusableMesh> {
-        if self.triangles.is_empty() {
+        Ok(self.finish_with(Vec::new())?.mesh)
+    }
+
+    /// The same with bodies that have copies.
+    ///
+    /// # Errors
+    ///
+    /// [`UnusableMesh::NoTriangles`] if neither was added.
+    pub fn finish_with(self, copied: Vec<CopiedBody>) -> Result<MeshAssembly, UnusableMesh> {
+        if self.triangles.is_empty() && copied.is_empty() {
             return Err(UnusableMesh::NoTriangles);
         }
+        Ok(MeshAssembly { mesh: self.into_mesh(), copied })
+    }
+
+    fn into_mesh(self) -> TriangleMesh {
         let mut mesh = TriangleMesh {
             positions: self.positions,
             triangles: self.triangles,
@@ -93,7 +114,7 @@ impl MeshBuilder {
         };
         let mut normals = self.normals;
         if normals.iter().flatten().all(|normal| *normal == DVec3::ZERO) {
-            return Ok(mesh);
+            return mesh;
         }
         for (triangle, normals) in normals.iter_mut().enumerate() {
             let facet = area_vector(mesh.corners(triangle)).normalize_or(DVec3::Z);
@@ -102,7 +123,7 @@ impl MeshBuilder {
             }
         }
         mesh.normals = Some(normals);
-        Ok(mesh)
+        mesh
     }
 
     fn check(

@@ -5,7 +5,7 @@
 mod tests;
 
 use crate::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
-use crate::mesh::{TriangleMesh, area_vector};
+use crate::mesh::{CopiedBody, TriangleMesh, area_vector};
 use glam::DVec3;
 
 /// Below this turn, degrees, two facets belong to one flat face with rounded coordinates.
@@ -40,6 +40,11 @@ impl Defects {
     fn add(&mut self, place: impl Fn() -> DVec3) {
         self.count += 1;
         self.first.get_or_insert_with(place);
+    }
+
+    fn add_copies(&mut self, body: &Self, copied: &CopiedBody) {
+        self.count += body.count * copied.places.len();
+        self.first = self.first.or(body.first.map(|place| copied.in_first_copy(place)));
     }
 }
 
@@ -79,6 +84,36 @@ impl MeshHealth {
             && self.crowded_edges.count == 0
             && self.inconsistent_edges.count == 0
             && self.signed_volume_mm3 > 0.0
+    }
+
+    /// Adds the copies of a body.
+    pub(super) fn add_copies(&mut self, body: &Self, copied: &CopiedBody) {
+        for (all, own) in [
+            (&mut self.open_edges, &body.open_edges),
+            (&mut self.crowded_edges, &body.crowded_edges),
+            (&mut self.inconsistent_edges, &body.inconsistent_edges),
+            (&mut self.degenerate_triangles, &body.degenerate_triangles),
+            (&mut self.slivers, &body.slivers),
+            (&mut self.opposed_normals, &body.opposed_normals),
+        ] {
+            all.add_copies(own, copied);
+        }
+        let rise = body.sagitta_mm.map(|rise| rise * copied.largest_scale());
+        self.sagitta_mm = self.sagitta_mm.into_iter().chain(rise).reduce(f64::max);
+        let squares = copied.power_of_scales(2);
+        let [own, added] = [self.faceted_mm2(), squares * body.faceted_mm2()];
+        self.area_mm2 += squares * body.area_mm2;
+        // The larger faceted part is typical of all.
+        let typical = if added > own { &body.facets } else { &self.facets };
+        self.facets = typical
+            .map(|facets| CoarseFacets { area_share: (own + added) / self.area_mm2, ..facets });
+        self.signed_volume_mm3 += copied.power_of_scales(3) * body.signed_volume_mm3;
+        self.shells += body.shells * copied.places.len();
+    }
+
+    /// Area of facets that are not smoothed, mm².
+    fn faceted_mm2(&self) -> f64 {
+        self.facets.map_or(0.0, |facets| facets.area_share * self.area_mm2)
     }
 }
 

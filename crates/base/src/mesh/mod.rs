@@ -5,13 +5,16 @@
 //! [`health()`] reports whether it is closed and the right way out. This module knows no optical
 //! properties and no file format.
 
+mod assembly;
 pub mod bodies;
 mod builder;
 mod health;
 pub mod topology;
 
+pub use assembly::{CopiedBody, FaceSize, MAX_SHOWN_TRIANGLES, MeshAssembly};
 pub use builder::{MeshBuilder, UnusableMesh};
 pub use health::{Defects, MeshHealth, health, normals_agree};
+pub use topology::is_closed;
 
 use crate::math::Aabb;
 use glam::DVec3;
@@ -19,7 +22,7 @@ use glam::DVec3;
 /// Most triangles that a mesh may have: 5 GB as a [`TriangleMesh`] with normals.
 pub const MAX_TRIANGLES: usize = 50_000_000;
 /// Largest coordinate, mm: a thousand kilometres. Squares and cubes of it are far from overflow.
-pub(crate) const MAX_COORDINATE_MM: f64 = 1.0e9;
+pub const MAX_COORDINATE_MM: f64 = 1.0e9;
 /// Name of the face of triangles that have neither material nor group.
 pub const UNNAMED_FACE: &str = "surface";
 
@@ -48,6 +51,18 @@ impl TriangleMesh {
     /// The smallest box around all vertices, mm.
     pub fn bounds(&self) -> Aabb {
         Aabb::of(self.positions.iter().copied())
+    }
+
+    /// Sizes of the faces, in their order.
+    pub fn face_sizes(&self) -> Vec<FaceSize> {
+        // In one pass: an OBJ file may have as many groups as triangles.
+        let mut sizes = vec![FaceSize::default(); self.faces.len()];
+        for (triangle, face) in self.face_of.iter().enumerate() {
+            let size = &mut sizes[*face as usize];
+            size.triangles += 1;
+            size.area_mm2 += 0.5 * area_vector(self.corners(triangle)).length();
+        }
+        sizes
     }
 }
 

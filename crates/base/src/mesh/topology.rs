@@ -1,5 +1,7 @@
 //! Which triangles share an edge, and which are connected.
 
+use crate::mesh::TriangleMesh;
+
 /// A triangle's side of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HalfEdge {
@@ -62,6 +64,15 @@ pub fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
 /// Whether two half edges join the same vertices.
 pub fn same_edge(one: &HalfEdge, other: &HalfEdge) -> bool {
     one.low == other.low && one.high == other.high
+}
+
+/// Whether every edge of a mesh has two triangles, which face the same side.
+pub fn is_closed(mesh: &TriangleMesh) -> bool {
+    let is_inner = |edge: &[HalfEdge]| match edge {
+        [one, other] => one.is_upward(&mesh.triangles) != other.is_upward(&mesh.triangles),
+        _ => false,
+    };
+    half_edges(&mesh.triangles).chunk_by(same_edge).all(is_inner)
 }
 
 /// Whether a triangle uses a vertex twice.

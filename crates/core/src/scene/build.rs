@@ -3,12 +3,12 @@
 use crate::optics::{Finish, Medium};
 use crate::plan::Polarisation;
 use crate::scene::crossing::convex::{Convex, ConvexSolids};
-use crate::scene::mesh::Mesh;
+use crate::scene::mesh::{Mesh, MeshBody, MeshPlace};
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::surfaces::surfaces;
 use crate::scene::relief::{PatchCut, Relief, ReliefWall, Trim};
 use crate::scene::{
-    Accel, COINCIDENCE, Face, FaceId, FacePiece, FinishId, LightGroups, MediumId, MeshBody,
+    Accel, COINCIDENCE, Face, FaceId, FacePiece, FinishId, LightGroups, MediumId, MeshPieces,
     NamedFinish, Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid,
     SolidId, Source, SourceId, SourceSpectra, Surface,
 };
@@ -59,6 +59,8 @@ impl Builder {
             reliefs: Vec::new(),
             patches: Vec::new(),
             meshes: Vec::new(),
+            copies: Vec::new(),
+            first_of_copies: 0,
             ports: Vec::new(),
             sources: Vec::new(),
             spectra: SourceSpectra::default(),
@@ -127,7 +129,7 @@ impl Builder {
         face
     }
 
-    /// Adds a closed mesh as the boundary of a solid. `finishes` has those outside and inside of each of its
+    /// Adds a closed mesh to the boundary of a solid. `finishes` has those outside and inside of each of its
     /// faces; a face's name is `prefix` followed by its name in the mesh.
     pub fn add_mesh(
         &mut self,
@@ -137,27 +139,66 @@ impl Builder {
         finishes: &[[Option<FinishId>; 2]],
     ) -> Vec<FaceId> {
         let owner = Owner::Solid(solid);
-        let triangles = 0..mesh.triangle_count();
-        self.grow(
-            owner,
-            triangles.fold(Aabb::EMPTY, |sum, triangle| sum.union(mesh.bounds(triangle))),
-        );
-        let first_face = self.scene.faces.len();
-        for (index, (name, [front, back])) in mesh.face_names().zip(finishes).enumerate() {
-            self.scene.faces.push(Face {
-                name: format!("{prefix}.{name}"),
-                owner,
-                front: *front,
-                back: *back,
-                patterns: Vec::new(),
-                extent: PieceRange::Mesh { mesh: self.scene.meshes.len(), face: index },
-            });
-        }
-        let faces: Vec<FaceId> = (first_face..self.scene.faces.len()).map(FaceId::new).collect();
-        let planes = (0..faces.len()).map(|face| mesh.chart_plane(face)).collect();
+        let number = self.scene.meshes.len();
+        let names: Vec<String> = mesh.face_names().map(|name| format!("{prefix}.{name}")).collect();
+        let own = |face| MeshPieces { own: Some((number, face)), copies: Vec::new() };
+        let faces: Vec<FaceId> = names
+            .into_iter()
+            .zip(finishes)
+            .enumerate()
+            .map(|(face, (name, finishes))| self.mesh_face(name, owner, *finishes, own(face)))
+            .collect();
         // The number of the first triangle is known once all patches are added.
-        self.scene.meshes.push(MeshBody { mesh, owner, faces: faces.clone(), planes, first: 0 });
+        let body = MeshBody::new(mesh, owner, faces.clone());
+        self.grow(owner, body.bounds());
+        self.scene.meshes.push(body);
         faces
+    }
+
+    /// Adds copies of a closed mesh, which share its triangles, to the boundary of a solid. Faces of the solid that have the same names
+    /// grow by theirs.
+    pub fn add_mesh_copies(
+        &mut self,
+        prefix: &str,
+        solid: SolidId,
+        (mesh, places): (Mesh, Vec<MeshPlace>),
+        finishes: &[[Option<FinishId>; 2]],
+    ) -> Vec<FaceId> {
+        let owner = Owner::Solid(solid);
+        let first = self.scene.copies.len();
+        let bodies = first..first + places.len();
+        let names: Vec<String> = mesh.face_names().map(|name| format!("{prefix}.{name}")).collect();
+        let mut faces = Vec::new();
+        for (index, (name, finishes)) in names.into_iter().zip(finishes).enumerate() {
+            let copies = (bodies.clone(), index);
+            let known = self.scene.face_named(&name);
+            match known.map(|face| (face, &mut self.scene.faces[face.index()].extent)) {
+                Some((face, PieceRange::Mesh(pieces))) => {
+                    pieces.copies.push(copies);
+                    faces.push(face);
+                }
+                Some((_, PieceRange::Patches(_) | PieceRange::Ports(_))) | None => {
+                    let pieces = MeshPieces { own: None, copies: vec![copies] };
+                    faces.push(self.mesh_face(name, owner, *finishes, pieces));
+                }
+            }
+        }
+        let copies: Vec<MeshBody> = MeshBody::copies(mesh, places, owner, faces.clone()).collect();
+        self.grow(owner, copies.iter().map(MeshBody::bounds).fold(Aabb::EMPTY, Aabb::union));
+        self.scene.copies.extend(copies);
+        faces
+    }
+
+    fn mesh_face(
+        &mut self,
+        name: String,
+        owner: Owner,
+        [front, back]: [Option<FinishId>; 2],
+        pieces: MeshPieces,
+    ) -> FaceId {
+        let (patterns, extent) = (Vec::new(), PieceRange::Mesh(pieces));
+        self.scene.faces.push(Face { name, owner, front, back, patterns, extent });
+        FaceId::new(self.scene.faces.len() - 1)
     }
 
     fn grow(&mut self, owner: Owner, bounds: Aabb) {
@@ -245,23 +286,33 @@ impl Builder {
         let mut scene = self.scene;
         let patches = scene.patches.len();
         let mut surfaces = patches;
-        for body in &mut scene.meshes {
+        for body in scene.meshes.iter_mut().chain(&mut scene.copies) {
             body.first = surfaces;
-            surfaces += body.mesh.triangle_count();
+            surfaces += body.triangle_count();
         }
+        scene.first_of_copies = scene.copies.first().map_or(surfaces, |copy| copy.first);
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.spectra = SourceSpectra::new(&scene.sources);
-        let bounds = |index| match scene.surface(PrimId::new(index)) {
-            Surface::Patch(patch) => patch.shape.bounds(),
-            Surface::Triangle(body, triangle) => body.mesh.bounds(triangle),
-        };
         let reach = scene.bounds.largest_coordinate();
-        scene.accel = Accel::new([patches, surfaces - patches], bounds, reach);
+        scene
+            .copies
+            .chunk_by_mut(|one, other| one.shares_triangles(other))
+            .for_each(|copies| MeshBody::plant(copies, reach));
+        // In the tree copies follow all other surfaces, each as one.
+        let bounds =
+            |index: usize| match scene.copies.get(index.wrapping_sub(scene.first_of_copies)) {
+                Some(copy) => copy.bounds(),
+                None => match scene.surface(PrimId::new(index)) {
+                    Surface::Patch(patch) => patch.shape.bounds(),
+                    Surface::Triangle(body, triangle) => body.triangle_bounds(triangle),
+                },
+            };
+        let others = scene.first_of_copies - patches + scene.copies.len();
+        scene.accel = Accel::new([patches, others], bounds, reach);
         if let Accel::Scan(_) = scene.accel {
             let solids = (0..scene.solids.len()).map(SolidId::new);
             let room = ConvexSolids {
                 patches: &scene.patches,
-                meshes: &scene.meshes,
                 diagonal: scene.bounds.diagonal(),
                 tolerance: scene.tolerance,
             };

@@ -1,12 +1,11 @@
 //! Faces: the named parts of solids and sheets, and the smooth pieces they are made of.
 
-use crate::scene::mesh::Mesh;
 use crate::scene::relief::{ReliefWall, Trim};
 use crate::scene::shape::{ChartRect, Crossing, CrossingQuery, RayStart, Shape, Toward};
 use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, FinishId, Ray, SolidId};
 use glam::{DVec2, DVec3};
-use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::math::Frame;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -57,36 +56,17 @@ pub enum PieceRange {
     Patches(Range<usize>),
     /// In the scene's table of ports.
     Ports(Range<usize>),
-    /// In a mesh.
-    Mesh {
-        /// Mesh of the scene.
-        mesh: usize,
-        /// Face of the mesh.
-        face: usize,
-    },
+    /// In meshes.
+    Mesh(MeshPieces),
 }
 
-/// A closed body of triangles.
-#[derive(Debug, Clone)]
-pub struct MeshBody {
-    /// Its triangles.
-    pub mesh: Mesh,
-    /// The owner of its faces.
-    pub owner: Owner,
-    /// The scene's face of each face of the mesh.
-    pub faces: Vec<FaceId>,
-    /// The plane of each face of the mesh that is flat.
-    pub planes: Vec<Option<Frame>>,
-    /// Number of its first triangle among all surfaces.
-    pub first: usize,
-}
-
-impl MeshBody {
-    /// Box around it, mm.
-    pub fn bounds(&self) -> Aabb {
-        let triangles = (0..self.mesh.triangle_count()).map(|triangle| self.mesh.bounds(triangle));
-        triangles.fold(Aabb::EMPTY, Aabb::union)
-    }
+/// The location of a face of a solid of triangles.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct MeshPieces {
+    /// A mesh of the scene, and the face there.
+    pub own: Option<(usize, usize)>,
+    /// Copies of a mesh, by their numbers among all copies of the scene, and the face of their mesh.
+    pub copies: Vec<(Range<usize>, usize)>,
 }
 
 /// Points used to find the area of a surface cut off at a round wall.

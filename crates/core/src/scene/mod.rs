@@ -37,7 +37,7 @@ pub use crossing::hit::StartSide;
 pub use crossing::hit::{Hits, PrimHit};
 pub use crossing::inside::Inside;
 pub use crossing::on::StartSurfaces;
-pub use face::{Face, FacePiece, MeshBody, Owner, Patch, PieceRange};
+pub use face::{Face, FacePiece, MeshPieces, Owner, Patch, PieceRange};
 pub use ids::LightGroupId;
 pub(crate) use ids::SmoothId;
 pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SolidId, SourceId};

@@ -3,11 +3,12 @@
 use crate::optics::{Finish, Medium};
 use crate::plan::Polarisation;
 use crate::scene::crossing::convex::Convex;
+use crate::scene::mesh::MeshBody;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::Relief;
 use crate::scene::{
-    Accel, Face, Inside, LightGroups, MediumId, MeshBody, Patch, PlainLeg, PrimId, Sensor, SolidId,
-    Source, SourceId, SourceSpectra,
+    Accel, Face, Inside, LightGroups, MediumId, Patch, PlainLeg, PrimId, Sensor, SolidId, Source,
+    SourceId, SourceSpectra,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -70,6 +71,10 @@ pub struct Scene {
     pub patches: Vec<Patch>,
     /// Bodies of triangles; their triangles are numbered after the patches.
     pub meshes: Vec<MeshBody>,
+    /// Copies of meshes; those of one mesh follow one another.
+    pub copies: Vec<MeshBody>,
+    /// Number of the first triangle of the copies among all surfaces.
+    pub(super) first_of_copies: usize,
     /// Pieces of open ports and virtual sensors, which light passes.
     pub ports: Vec<Patch>,
     /// All sources.
@@ -92,10 +97,15 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// All bodies of triangles.
+    pub fn mesh_bodies(&self) -> impl Iterator<Item = &MeshBody> {
+        self.meshes.iter().chain(&self.copies)
+    }
+
     /// Whether the boxes around all that light starts on or meets lie within a sphere, mm.
     pub fn lies_within(&self, middle: DVec3, radius: f64) -> bool {
         let patches = self.patches.iter().map(|patch| patch.shape.bounds());
-        let meshes = self.meshes.iter().map(|body| body.bounds());
+        let meshes = self.mesh_bodies().map(MeshBody::bounds);
         let near = self.sources.iter().filter(|source| !source.emitter.is_far());
         let sources = near.map(|source| source.emitter.bounds());
         patches.chain(meshes).chain(sources).all(|bounds| {

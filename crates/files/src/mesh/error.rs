@@ -1,7 +1,7 @@
 //! Errors of reading a mesh, and limits of its size.
 
 use crate::mesh::format::MeshFormat;
-use lumiduct_base::mesh::UnusableMesh;
+use lumiduct_base::mesh::{MAX_SHOWN_TRIANGLES, UnusableMesh};
 
 /// Longest file that is read, bytes: enough for 50 million triangles of binary STL.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
@@ -60,10 +60,13 @@ pub enum MeshError {
     /// The file, or the files together, are longer than [`MAX_FILE_BYTES`].
     #[error("the file has more than {} GiB; export a coarser mesh with smooth normals", MAX_FILE_BYTES >> 30)]
     FileTooLong,
-    /// Nodes of a glTF file repeat its meshes so often that the copies take more than [`MAX_COPIES_BYTES`].
+    /// Nodes of a glTF file repeat its meshes so often that the copies take more than [`MAX_COPIES_BYTES`], and they cannot share
+    /// their triangles.
     #[error(
-        "its {nodes} nodes repeat meshes to {triangles} triangles, about {} MiB in memory, and copies may take {} MiB; \
-         export fewer copies", bytes >> 20, MAX_COPIES_BYTES >> 20
+        "its {nodes} nodes repeat meshes that are open, distorted or near other parts to {triangles} triangles, about {} MiB in \
+         memory, and such copies may take {} MiB; export fewer copies, or closed ones that are only moved, turned and scaled and \
+         whose boxes do not overlap",
+        bytes >> 20, MAX_COPIES_BYTES >> 20
     )]
     TooManyCopies {
         /// Nodes with a mesh.
@@ -72,6 +75,17 @@ pub enum MeshError {
         triangles: u64,
         /// Memory that they would take, bytes.
         bytes: u64,
+    },
+    /// The nodes of a glTF file show more triangles than [`MAX_SHOWN_TRIANGLES`].
+    #[error(
+        "its {nodes} nodes show {triangles} triangles, and at most {} million may be shown; export fewer copies",
+        MAX_SHOWN_TRIANGLES / 1_000_000
+    )]
+    TooManyShown {
+        /// Nodes with a mesh.
+        nodes: usize,
+        /// Triangles of all of them.
+        triangles: u64,
     },
     /// The triangles make no mesh that can be traced.
     #[error(transparent)]

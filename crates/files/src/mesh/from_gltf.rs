@@ -7,15 +7,17 @@
 
 use crate::mesh::error::MeshError;
 use crate::mesh::format::LengthUnit;
-use crate::mesh::gltf_buffers::{Buffers, Elements, broken};
-use crate::mesh::gltf_copies::refuse_too_many_copies;
-use crate::mesh::gltf_nodes::{cofactors, placed_nodes};
-use glam::{DAffine3, DMat3, DVec3};
+use crate::mesh::gltf_buffers::{Buffers, broken};
+use crate::mesh::gltf_copies::{
+    Copies, copied, grouped, mirror, refuse_impossible_copies, refuse_large_copies, touching,
+    triangle_counts,
+};
+use crate::mesh::gltf_nodes::{PlacedMesh, placed_meshes};
+use crate::mesh::gltf_primitive::add_primitive;
+use glam::{DAffine3, DVec3};
 use gltf::json::Root;
-use gltf::json::accessor::{ComponentType, Type};
-use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
-use lumiduct_base::mesh::{MeshBuilder, TriangleMesh, UNNAMED_FACE};
+use lumiduct_base::math::Aabb;
+use lumiduct_base::mesh::{CopiedBody, MeshAssembly, MeshBuilder, is_closed};
 use std::path::Path;
 
 /// Length of a GLB's header, bytes.
@@ -26,32 +28,80 @@ pub(crate) fn read(
     bytes: &[u8],
     folder: &Path,
     unit: LengthUnit,
-) -> Result<TriangleMesh, MeshError> {
+) -> Result<MeshAssembly, MeshError> {
     let glb = if bytes.starts_with(b"glTF") { Some(open_glb(bytes)?) } else { None };
     let json = glb.as_ref().map_or(bytes, |glb| &glb.json);
     let root = Root::from_slice(json).map_err(|error| broken(error.to_string()))?;
     refuse_unknown_extensions(&root)?;
     let blob = glb.as_ref().and_then(|glb| glb.bin.as_deref());
     let buffers = Buffers::load(&root, blob, folder)?;
+    let document = Document { root: &root, buffers: &buffers };
+    let placed = placed_meshes(&root, unit.millimetres())?;
+    let counts = triangle_counts(&root, &buffers, &placed)?;
+    refuse_impossible_copies(&placed, &counts)?;
+    let (groups, mut others) = grouped(placed, &counts);
+    refuse_large_copies(others.iter(), &counts)?;
     let mut builder = MeshBuilder::default();
-    let placed = placed_nodes(&root)?;
-    refuse_too_many_copies(&root, &buffers, placed.iter().filter_map(|(node, _)| node.mesh))?;
-    for (node, to_scene) in placed {
-        let to_scene = DAffine3::from_scale(DVec3::splat(unit.millimetres())) * to_scene;
-        let Some(mesh) = node.mesh else { continue };
-        if node.skin.is_some() {
-            return Err(MeshError::Unsupported {
-                what: "the glTF file has a mesh with a skin".into(),
-                remedy: "apply the armature before exporting",
-            });
+    document.add(&mut builder, &others)?;
+    let (shared, joined) = document.shared(groups, builder.positions())?;
+    others.extend(&joined);
+    refuse_large_copies(others.iter(), &counts)?;
+    document.add(&mut builder, &joined)?;
+    Ok(builder.finish_with(shared)?)
+}
+
+/// A document and what it refers to.
+#[derive(Clone, Copy)]
+struct Document<'a> {
+    root: &'a Root,
+    buffers: &'a Buffers<'a>,
+}
+
+impl Document<'_> {
+    /// Adds the triangles of some nodes.
+    fn add(self, builder: &mut MeshBuilder, placed: &[PlacedMesh]) -> Result<(), MeshError> {
+        for PlacedMesh { mesh, to_scene, .. } in placed {
+            let primitives = self.root.get(*mesh).into_iter().flat_map(|mesh| &mesh.primitives);
+            for primitive in primitives {
+                add_primitive(builder, self.root, self.buffers, primitive, to_scene)?;
+            }
         }
-        let mesh = root.get(mesh);
-        let mesh = mesh.ok_or_else(|| broken("a node names a mesh that does not exist".into()))?;
-        for primitive in &mesh.primitives {
-            add_primitive(&mut builder, &root, &buffers, primitive, &to_scene)?;
-        }
+        Ok(())
     }
-    Ok(builder.finish()?)
+
+    /// Bodies that nodes share, and the nodes that must be joined with others, of which the vertices are known.
+    fn shared(
+        self,
+        groups: Vec<Copies>,
+        vertices: &[DVec3],
+    ) -> Result<(Vec<CopiedBody>, Vec<PlacedMesh>), MeshError> {
+        let (mut shared, mut joined) = (Vec::new(), Vec::new());
+        for copies in groups {
+            let mut body = MeshBuilder::default();
+            let to_scene = if copies.is_mirrored { mirror() } else { DAffine3::IDENTITY };
+            self.add(&mut body, &[PlacedMesh { to_scene, ..copies.nodes[0] }])?;
+            let body = body.finish()?;
+            if is_closed(&body) {
+                shared.push((copied(&copies, body)?, copies.nodes));
+            } else {
+                joined.extend(copies.nodes);
+            }
+        }
+        let boxes: Vec<Aabb> = shared.iter().flat_map(|(copied, _)| copied.boxes()).collect();
+        let mut touches = touching(&boxes, vertices).into_iter();
+        for (copied, nodes) in &mut shared {
+            let placed = std::mem::take(&mut copied.places).into_iter().zip(nodes.iter());
+            for ((place, node), touches) in placed.zip(&mut touches) {
+                if touches {
+                    joined.push(*node);
+                } else {
+                    copied.places.push(place);
+                }
+            }
+        }
+        let bodies = shared.into_iter().map(|(copied, _)| copied);
+        Ok((bodies.filter(|copied| !copied.places.is_empty()).collect(), joined))
+    }
 }
 
 fn open_glb(bytes: &[u8]) -> Result<gltf::Glb<'_>, MeshError> {
@@ -77,131 +127,19 @@ fn refuse_unknown_extensions(root: &Root) -> Result<(), MeshError> {
     }
 }
 
-/// Positions and normals of a primitive, with the transform to the scene.
-struct Vertices<'a> {
-    positions: Elements<'a>,
-    normals: Option<Elements<'a>>,
-    to_scene: DAffine3,
-    normal_to_scene: DMat3,
-}
-
-impl Vertices<'_> {
-    fn position(&self, index: usize) -> Option<DVec3> {
-        Some(self.to_scene.transform_point3(vector3(self.positions.get(index)?)?))
-    }
-
-    fn normal(&self, index: usize) -> Option<DVec3> {
-        Some(self.normal_to_scene * vector3(self.normals?.get(index)?)?)
-    }
-}
-
-fn add_primitive(
-    builder: &mut MeshBuilder,
-    root: &Root,
-    buffers: &Buffers<'_>,
-    primitive: &Primitive,
-    to_scene: &DAffine3,
-) -> Result<(), MeshError> {
-    if primitive.mode != Checked::Valid(Mode::Triangles) {
-        return Err(MeshError::Unsupported {
-            what: "the glTF file has points, lines, strips or fans".into(),
-            remedy: "export separate triangles only",
-        });
-    }
-    let vertices = vertices(buffers, primitive, to_scene)?;
-    let face = face_name(root, primitive)?;
-    let indices = match primitive.indices {
-        Some(accessor) => Some(buffers.elements(accessor, Type::Scalar)?),
-        None => None,
-    };
-    let count = indices.map_or(vertices.positions.count(), |(elements, _)| elements.count());
-    if !count.is_multiple_of(3) {
-        return Err(broken(format!("a primitive has {count} corners, not three per triangle")));
-    }
-    let mirrored = to_scene.matrix3.determinant() < 0.0;
-    for first in (0..count).step_by(3) {
-        // Mirroring reverses the orientation.
-        let corners = if mirrored { [0, 2, 1] } else { [0, 1, 2] }.map(|corner| {
-            let index = match indices {
-                Some((elements, component)) => unsigned(elements.get(first + corner)?, component)?,
-                None => first + corner,
-            };
-            Some((vertices.position(index)?, vertices.normal(index)))
-        });
-        let [Some(a), Some(b), Some(c)] = corners else {
-            return Err(broken("an index names a vertex that does not exist".into()));
-        };
-        let normals = match (a.1, b.1, c.1) {
-            (Some(a), Some(b), Some(c)) => Some([a, b, c]),
-            _ => None,
-        };
-        builder.add([a.0, b.0, c.0], normals, &face)?;
-    }
-    Ok(())
-}
-
-fn vertices<'a>(
-    buffers: &'a Buffers<'_>,
-    primitive: &Primitive,
-    to_scene: &DAffine3,
-) -> Result<Vertices<'a>, MeshError> {
-    let attribute = |semantic: Semantic| match primitive.attributes.get(&Checked::Valid(semantic)) {
-        Some(accessor) => match buffers.elements(*accessor, Type::Vec3)? {
-            (elements, ComponentType::F32) => Ok(Some(elements)),
-            _ => Err(MeshError::Unsupported {
-                what: "the glTF file has quantised positions or normals".into(),
-                remedy: "export without mesh quantisation",
-            }),
-        },
-        None => Ok(None),
-    };
-    let positions = attribute(Semantic::Positions)?;
-    let positions = positions.ok_or_else(|| broken("a primitive has no positions".into()))?;
-    let normals = attribute(Semantic::Normals)?;
-    if normals.is_some_and(|normals| normals.count() != positions.count()) {
-        return Err(broken("a primitive has not as many normals as positions".into()));
-    }
-    Ok(Vertices {
-        positions,
-        normals,
-        to_scene: *to_scene,
-        normal_to_scene: cofactors(to_scene.matrix3),
-    })
-}
-
-fn face_name(root: &Root, primitive: &Primitive) -> Result<String, MeshError> {
-    let Some(index) = primitive.material else { return Ok(UNNAMED_FACE.to_owned()) };
-    let number = index.value();
-    let material = root.get(index);
-    let material = material.ok_or_else(|| broken(format!("material {number} does not exist")))?;
-    Ok(material.name.clone().unwrap_or_else(|| format!("material_{number}")))
-}
-
-fn vector3(bytes: &[u8]) -> Option<DVec3> {
-    match bytes.as_chunks::<4>().0 {
-        [x, y, z] => Some(DVec3::from_array([x, y, z].map(|c| f64::from(f32::from_le_bytes(*c))))),
-        _ => None,
-    }
-}
-
-fn unsigned(bytes: &[u8], component: ComponentType) -> Option<usize> {
-    match component {
-        ComponentType::U8 => Some(usize::from(*bytes.first()?)),
-        ComponentType::U16 => Some(usize::from(u16::from_le_bytes(bytes.try_into().ok()?))),
-        ComponentType::U32 => Some(u32::from_le_bytes(bytes.try_into().ok()?) as usize),
-        ComponentType::I8 | ComponentType::I16 | ComponentType::F32 => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bytes::tests::mutants;
-    use crate::mesh::error::{MAX_COPIES_BYTES, TRIANGLE_BYTES};
     use crate::mesh::samples::{glb, glb_of, gltf_parts};
     use lumiduct_base::mesh::bodies::{Normals, rod};
-    use lumiduct_base::mesh::health;
+    use lumiduct_base::mesh::{TriangleMesh, health};
     use serde_json::{Value, json};
+
+    /// The triangles that are not shared.
+    fn read(bytes: &[u8], folder: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
+        super::read(bytes, folder, unit).map(|assembly| assembly.mesh)
+    }
 
     fn read_json(json: &Value, blob: &[u8]) -> Result<TriangleMesh, MeshError> {
         read(&glb(json, blob), Path::new(""), LengthUnit::Millimetre)
@@ -305,23 +243,6 @@ mod tests {
             change(&mut json);
             let error = read_json(&json, &blob).unwrap_err().to_string();
             assert!(error.contains(expected), "{expected}: {error}");
-        }
-    }
-
-    #[test]
-    fn many_copies_of_a_mesh_are_counted_before_they_are_made() {
-        let (rod, mut json, blob) = rod_parts();
-        let most = MAX_COPIES_BYTES / (TRIANGLE_BYTES * rod.triangles.len() as u64);
-        let mut with_copies = |count: u64| {
-            json["nodes"] = (0..count).map(|_| json!({ "mesh": 0 })).collect();
-            json["scenes"][0]["nodes"] = (0..count).collect();
-            read_json(&json, &blob)
-        };
-        assert_eq!(with_copies(3).unwrap().triangles.len(), 3 * rod.triangles.len());
-        let error = with_copies(most + 2).unwrap_err();
-        assert!(matches!(error, MeshError::TooManyCopies { .. }), "{error}");
-        for words in ["export fewer copies", "about 1024 MiB", "copies may take 1024 MiB"] {
-            assert!(error.to_string().contains(words), "{error}");
         }
     }
 

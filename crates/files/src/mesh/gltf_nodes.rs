@@ -4,11 +4,43 @@
 use crate::mesh::error::MeshError;
 use crate::mesh::gltf_buffers::broken;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use gltf::json::mesh::Mesh;
 use gltf::json::scene::Node;
 use gltf::json::{Index, Root};
 
-/// All nodes of the scene in the order of the file, with their transforms to the scene.
-pub(crate) fn placed_nodes(root: &Root) -> Result<Vec<(&Node, DAffine3)>, MeshError> {
+/// A node that shows a mesh.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlacedMesh {
+    /// The node, by its number in the document.
+    pub(crate) node: usize,
+    /// Its place among all nodes with meshes.
+    pub(crate) order: usize,
+    pub(crate) mesh: Index<Mesh>,
+    pub(crate) to_scene: DAffine3,
+}
+
+/// All nodes of the scene that show a mesh, parents before their children; a unit of the document has `unit_mm`.
+pub(crate) fn placed_meshes(root: &Root, unit_mm: f64) -> Result<Vec<PlacedMesh>, MeshError> {
+    let mut placed = Vec::new();
+    for (number, node, to_scene) in placed_nodes(root)? {
+        let Some(mesh) = node.mesh else { continue };
+        if node.skin.is_some() {
+            return Err(MeshError::Unsupported {
+                what: "the glTF file has a mesh with a skin".into(),
+                remedy: "apply the armature before exporting",
+            });
+        }
+        if root.get(mesh).is_none() {
+            return Err(broken("a node names a mesh that does not exist".into()));
+        }
+        let to_scene = DAffine3::from_scale(DVec3::splat(unit_mm)) * to_scene;
+        placed.push(PlacedMesh { node: number, order: placed.len(), mesh, to_scene });
+    }
+    Ok(placed)
+}
+
+/// All nodes of the scene with their numbers and their transforms to it.
+fn placed_nodes(root: &Root) -> Result<Vec<(usize, &Node, DAffine3)>, MeshError> {
     let scene = match root.scene {
         Some(index) => root.get(index),
         None => root.scenes.first(),
@@ -31,7 +63,7 @@ pub(crate) fn placed_nodes(root: &Root) -> Result<Vec<(&Node, DAffine3)>, MeshEr
                 .map_err(|problem| broken(format!("the transform of node {number} {problem}")))?;
         let children = node.children.iter().flatten().rev();
         open.extend(children.map(|child| (*child, to_scene)));
-        placed.push((node, to_scene));
+        placed.push((number, node, to_scene));
     }
     Ok(placed)
 }

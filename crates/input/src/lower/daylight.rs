@@ -10,10 +10,11 @@ use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::units::per_m2_to_per_mm2;
 use lumiduct_core::optics::SkyModel;
+use lumiduct_core::scene::mesh::MeshBody;
 use lumiduct_core::scene::shape::Shape;
 use lumiduct_core::scene::{
-    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
-    StartSolids, SunAngles,
+    Emission, EmitSide, Emitter, EmitterKind, FaceId, Owner, Sky, Source, SourceId, StartSolids,
+    SunAngles,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -233,7 +234,7 @@ impl Context<'_> {
         let Ball { center, radius } = ball;
         let bodies = self.builder.scene();
         let patches = bodies.patches.iter().map(|patch| patch.shape.bounds());
-        let all = patches.chain(bodies.meshes.iter().map(MeshBody::bounds));
+        let all = patches.chain(bodies.mesh_bodies().map(MeshBody::bounds));
         let all = all.fold(Aabb::of([center]).grown(radius), Aabb::union);
         let farthest = (all.max - center).abs().max((all.min - center).abs()).length();
         Aim {

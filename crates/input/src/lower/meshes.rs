@@ -5,10 +5,12 @@ use crate::lower::context::Context;
 use crate::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
 use indexmap::IndexMap;
 use lumiduct_base::math::Frame;
-use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, health};
+use lumiduct_base::mesh::{
+    CopiedBody, Defects, MAX_SHOWN_TRIANGLES, MeshAssembly, MeshHealth, TriangleMesh,
+};
 use lumiduct_core::optics::FinishModel;
-use lumiduct_core::scene::mesh::Mesh;
-use lumiduct_core::scene::{FinishId, SolidId};
+use lumiduct_core::scene::mesh::{Mesh, MeshBody, MeshPlace};
+use lumiduct_core::scene::{FaceId, FinishId, SolidId};
 use lumiduct_files::mesh::{self, LengthUnit};
 
 /// Bounces for which the drift of a faceted wall is reported.
@@ -20,7 +22,7 @@ impl Context<'_> {
         &mut self,
         spec: &MeshSpec,
         key: &Key,
-    ) -> Option<(TriangleMesh, MeshHealth)> {
+    ) -> Option<(MeshAssembly, MeshHealth)> {
         let file = key.field("file");
         self.may_build(&file)?;
         let path = self.places.folder(&file).join(&spec.file);
@@ -37,11 +39,20 @@ impl Context<'_> {
                 return None;
             }
         };
-        self.meshes.add_mesh(&mesh);
-        if spec.normals == MeshNormals::Facet {
-            mesh.normals = None;
+        let bodies = self.builder.scene().mesh_bodies();
+        let others: usize = bodies.map(MeshBody::triangle_count).sum();
+        if others as u64 + mesh.triangle_count() > MAX_SHOWN_TRIANGLES {
+            let most = MAX_SHOWN_TRIANGLES / 1_000_000;
+            let message =
+                format!("the meshes of the scene have more than {most} million triangles");
+            self.problems.error(&file, message).hint("export coarser meshes with smooth normals");
+            return None;
         }
-        let health = health(&mesh);
+        self.meshes.add_assembly(&mesh);
+        if spec.normals == MeshNormals::Facet {
+            mesh.drop_normals();
+        }
+        let health = mesh.health();
         self.note_defects(spec, &health, &file);
         Some((mesh, health))
     }
@@ -93,16 +104,16 @@ impl Context<'_> {
         }
     }
 
-    /// The finishes outside and inside the faces of a mesh, in their order.
+    /// The finishes outside and inside the faces of a mesh, by their names.
     pub(super) fn mesh_finishes(
         &mut self,
         name: &str,
-        mesh: &TriangleMesh,
+        mesh: &MeshAssembly,
         declared: &IndexMap<&str, Option<FinishId>>,
         key: &Key,
-    ) -> Vec<[Option<FinishId>; 2]> {
-        let known: Vec<&str> = mesh.faces.iter().map(String::as_str).collect();
-        let mut finishes = vec![[None; 2]; known.len()];
+    ) -> MeshFinishes {
+        let mut finishes: MeshFinishes =
+            mesh.faces().into_keys().map(|face| (face.to_owned(), [None; 2])).collect();
         for (&face, &finish) in declared {
             let has_grain =
                 |finish: FinishId| self.builder.scene().finishes[finish.index()].finish.has_grain();
@@ -110,12 +121,12 @@ impl Context<'_> {
                 let message = "a prism film, or a scatter file that depends on a direction along the face, cannot be put on a mesh: a mesh has no direction along the guide";
                 self.problems.error(&key.field(face), message).hint("use a sweep or a tube");
             }
-            match known.iter().position(|name| *name == face) {
-                Some(index) => {
-                    let outside = finish.map(|finish| self.behind(finish));
-                    finishes[index] = [outside, finish];
+            match finishes.get_mut(face) {
+                Some(own) => *own = [finish.map(|finish| self.behind(finish)), finish],
+                None => {
+                    let known: Vec<&str> = finishes.keys().map(String::as_str).collect();
+                    self.note_no_face(name, face, &known, key);
                 }
-                None => self.note_no_face(name, face, &known, key),
             }
         }
         finishes
@@ -126,13 +137,30 @@ impl Context<'_> {
         &mut self,
         name: &str,
         solid: SolidId,
-        mesh: &TriangleMesh,
-        finishes: &[[Option<FinishId>; 2]],
+        MeshAssembly { mesh, copied }: &MeshAssembly,
+        finishes: &MeshFinishes,
         frame: &Frame,
     ) {
-        let faces = self.builder.add_mesh(name, solid, Mesh::new(mesh, frame), finishes);
-        for (face, id) in mesh.faces.iter().zip(faces) {
-            self.faces.insert(format!("{name}.{face}"), vec![id]);
+        let of = |mesh: &TriangleMesh| -> Vec<_> {
+            mesh.faces.iter().map(|face| finishes[face.as_str()]).collect()
+        };
+        let mut faces: Vec<FaceId> = Vec::new();
+        if !mesh.triangles.is_empty() {
+            let own = Mesh::new(mesh, frame);
+            faces.extend(self.builder.add_mesh(name, solid, own, &of(mesh)));
+        }
+        for CopiedBody { body, places } in copied {
+            let own = Mesh::new(body, &Frame::WORLD);
+            let places = places.iter().map(|place| MeshPlace::new(place, frame)).collect();
+            let added = self.builder.add_mesh_copies(name, solid, (own, places), &of(body));
+            faces.extend(added);
+        }
+        for face in faces {
+            let name = self.builder.scene().faces[face.index()].name.clone();
+            self.faces.insert(name, vec![face]);
         }
     }
 }
+
+/// The finishes outside and inside each face of a mesh.
+pub(super) type MeshFinishes = IndexMap<String, [Option<FinishId>; 2]>;

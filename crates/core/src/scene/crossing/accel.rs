@@ -14,22 +14,22 @@ const SCAN_LIMIT: usize = 12;
 pub(crate) enum Accel {
     /// A scan over this many patches.
     Scan(usize),
-    /// A tree over more, or over triangles.
+    /// A tree over more, or over triangles and copies of meshes.
     Tree(Tree),
 }
 
 impl Accel {
-    /// A structure over this many patches and triangles with these boxes, patches first.
+    /// A structure over this many patches and triangles or copies of meshes with these boxes, patches first.
     /// Ray origins have coordinates up to `largest_coordinate`, mm.
     pub(crate) fn new(
-        [patches, triangles]: [usize; 2],
+        [patches, others]: [usize; 2],
         bounds: impl Fn(usize) -> Aabb,
         largest_coordinate: f64,
     ) -> Self {
-        if triangles == 0 && patches <= SCAN_LIMIT {
+        if others == 0 && patches <= SCAN_LIMIT {
             return Self::Scan(patches);
         }
-        Self::Tree(Tree::over(patches + triangles, bounds, largest_coordinate))
+        Self::Tree(Tree::over(patches + others, bounds, largest_coordinate))
     }
 
     /// Calls `visit` with the index of every surface whose box the ray meets before the smallest distance that `visit` has
@@ -42,7 +42,7 @@ impl Accel {
                     visit(index);
                 }
             }
-            Self::Tree(tree) => tree.visit(ray, visit),
+            Self::Tree(tree) => tree.visit(ray, f64::INFINITY, visit),
         }
     }
 }

@@ -7,7 +7,7 @@
 
 use crate::scene::crossing::hit::Nearest;
 use crate::scene::shape::{Crossing, Cylinder, Flat, RayStart, Toward};
-use crate::scene::{MeshBody, Owner, Patch, PrimId, Ray, SolidId, StartSurfaces};
+use crate::scene::{Owner, Patch, PrimId, Ray, SolidId, StartSurfaces};
 use glam::DVec3;
 
 /// Unit normals this close to opposite are opposite up to rounding; 1.
@@ -57,11 +57,10 @@ impl Slab {
     }
 }
 
-/// Shared data of all solids.
+/// Shared data of all solids, in a scene without meshes.
 #[derive(Debug)]
 pub(crate) struct ConvexSolids<'a> {
     pub(crate) patches: &'a [Patch],
-    pub(crate) meshes: &'a [MeshBody],
     /// Diagonal of the box around everything, mm.
     pub(crate) diagonal: f64,
     /// Faces closer than this are the same, mm.
@@ -72,9 +71,6 @@ impl Convex {
     /// The solid of this number, if it is convex.
     pub(crate) fn of(room: &ConvexSolids<'_>, solid: SolidId) -> Option<Self> {
         let owner = Owner::Solid(solid);
-        if room.meshes.iter().any(|body| body.owner == owner) {
-            return None;
-        }
         let (mut flats, mut round) = (Vec::new(), None);
         for (index, patch) in room.patches.iter().enumerate() {
             let prim = PrimId::new(index);
@@ -374,7 +370,6 @@ mod tests {
             let scene = solid_of(shapes);
             let room = ConvexSolids {
                 patches: &scene.patches,
-                meshes: &scene.meshes,
                 diagonal: scene.bounds.diagonal(),
                 tolerance: scene.tolerance,
             };

@@ -134,12 +134,12 @@ impl Tree {
         (root, *binary.nodes[0].aabb())
     }
 
-    /// Calls `visit` with the index of every surface whose box the ray meets before the smallest distance that `visit` has
-    /// returned; of the boxes in a node, nearer ones come first.
+    /// Calls `visit` with the index of every surface whose box the ray meets before `limit` and the smallest distance that
+    /// `visit` has returned; of the boxes in a node, nearer ones come first.
     #[inline]
-    pub(crate) fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
+    pub(crate) fn visit(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(usize) -> f64) {
         let slabs = Slabs::of(ray);
-        let mut limit = f32::INFINITY;
+        let mut limit = round_up(limit);
         let mut open: SmallVec<[(f32, WideChild); 64]> = smallvec![(0.0, self.root)];
         while let Some((near, child)) = open.pop() {
             if near > limit {
@@ -349,7 +349,7 @@ mod tests {
             let tree = Tree::over(boxes.len(), |index| boxes[index], 2.0 * SIZE);
             for ray in rays().step_by(1 + boxes.len() / 1000) {
                 let mut visited = BTreeSet::new();
-                tree.visit(&ray, |index| {
+                tree.visit(&ray, f64::INFINITY, |index| {
                     assert!(visited.insert(index), "twice");
                     f64::INFINITY
                 });
@@ -370,13 +370,13 @@ mod tests {
             let first =
                 boxes.iter().filter_map(|own| entry(own, &ray)).fold(f64::INFINITY, f64::min);
             let mut found = f64::INFINITY;
-            tree.visit(&ray, |index| {
+            tree.visit(&ray, f64::INFINITY, |index| {
                 near += 1;
                 found = found.min(entry(&boxes[index], &ray).unwrap_or(f64::INFINITY));
                 found
             });
             assert_eq!(found, first, "{ray:?}");
-            tree.visit(&ray, |_| {
+            tree.visit(&ray, f64::INFINITY, |_| {
                 all += 1;
                 f64::INFINITY
             });

@@ -68,7 +68,7 @@ impl PlainLeg {
                 self.leave_out(shape.bounds(), margin);
             }
         }
-        scene.meshes.iter().for_each(|body| self.leave_out(body.bounds(), margin));
+        scene.mesh_bodies().for_each(|body| self.leave_out(body.bounds(), margin));
         for source in &scene.sources {
             // Light from far comes from outside of everything.
             if !matches!(source.emitter, Emitter::Far { .. }) {

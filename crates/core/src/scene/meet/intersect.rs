@@ -9,7 +9,7 @@
 use crate::scene::crossing::accel::Accel;
 use crate::scene::crossing::hit::{Hits, Nearest, PrimHit, StartSide};
 use crate::scene::crossing::tree::Tree;
-use crate::scene::mesh::TriangleLine;
+use crate::scene::mesh::{MeshBody, TriangleLine};
 use crate::scene::shape::{Crossing, CrossingQuery, RayStart, Toward};
 use crate::scene::{Inside, Owner, PrimId, Ray, Scene, StartSurfaces, Surface};
 use smallvec::SmallVec;
@@ -92,15 +92,47 @@ impl Scene {
     ) -> Nearest {
         let line = self.line(ray);
         let mut nearest = Nearest::NONE;
-        tree.visit(ray, |index| {
-            let prim = PrimId::new(index);
+        tree.visit(ray, f64::INFINITY, |index| {
+            if let Some(copy) = self.copy_at(index) {
+                // By value: lent, it would be kept in memory.
+                nearest = self.nearest_in_copy(copy, ray, from, inside, nearest);
+            } else {
+                let prim = PrimId::new(index);
+                let met = Met { surface: self.surface(prim), line: line.as_ref() };
+                let limit = nearest.crossing.t + self.tolerance;
+                if let Some(crossing) = self.crossing(prim, met, ray, from, (inside, limit)) {
+                    nearest.consider(prim, crossing);
+                }
+            }
+            nearest.crossing.t + self.tolerance
+        });
+        nearest
+    }
+
+    /// The nearest surface so far, or a nearer triangle of a copy.
+    #[inline(never)]
+    fn nearest_in_copy(
+        &self,
+        copy: &MeshBody,
+        ray: &Ray,
+        from: &StartSurfaces,
+        inside: &Inside,
+        mut nearest: Nearest,
+    ) -> Nearest {
+        copy.visit_copy(ray, nearest.crossing.t + self.tolerance, |prim, met| {
             let limit = nearest.crossing.t + self.tolerance;
-            if let Some(crossing) = self.crossing(prim, ray, line.as_ref(), from, inside, limit) {
+            if let Some(crossing) = self.crossing(prim, met, ray, from, (inside, limit)) {
                 nearest.consider(prim, crossing);
             }
             nearest.crossing.t + self.tolerance
         });
         nearest
+    }
+
+    /// The copy of a mesh with this number in the tree, after all surfaces that are not copied.
+    #[inline(always)]
+    fn copy_at(&self, index: usize) -> Option<&MeshBody> {
+        self.copies.get(index.wrapping_sub(self.first_of_copies))
     }
 
     /// The other surfaces at the nearest hit.
@@ -113,18 +145,32 @@ impl Scene {
         nearest: &Nearest,
     ) -> Box<[PrimHit]> {
         let limit = nearest.crossing.t + self.tolerance;
-        let line = self.line(ray);
         let mut others = Vec::new();
-        self.accel.visit(ray, |index| {
-            let prim = PrimId::new(index);
+        self.visit(ray, limit, |prim, met| {
             if prim != nearest.prim {
-                let crossing = self.crossing(prim, ray, line.as_ref(), from, inside, limit);
+                let crossing = self.crossing(prim, met, ray, from, (inside, limit));
                 others.extend(crossing.map(|crossing| self.hit(prim, crossing.toward)));
             }
-            limit
         });
         others.sort_unstable_by_key(|hit: &PrimHit| hit.prim);
         others.into()
+    }
+
+    /// Calls `visit` with every surface whose box the ray meets before `limit`, mm; a scan visits all.
+    fn visit(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(PrimId, Met<'_>)) {
+        let line = self.line(ray);
+        self.accel.visit(ray, |index| {
+            if let Some(copy) = self.copy_at(index) {
+                copy.visit_copy(ray, limit, |prim, met| {
+                    visit(prim, met);
+                    limit
+                });
+            } else {
+                let prim = PrimId::new(index);
+                visit(prim, Met { surface: self.surface(prim), line: line.as_ref() });
+            }
+            limit
+        });
     }
 
     /// The first crossing of a ray with a surface that counts, up to a distance.
@@ -132,13 +178,12 @@ impl Scene {
     fn crossing(
         &self,
         prim: PrimId,
+        met: Met<'_>,
         ray: &Ray,
-        line: Option<&TriangleLine>,
         from: &StartSurfaces,
-        inside: &Inside,
-        limit: f64,
+        (inside, limit): (&Inside, f64),
     ) -> Option<Crossing> {
-        match self.surface(prim) {
+        match met.surface {
             Surface::Patch(patch) => {
                 let wanted = self.wanted(patch.owner, inside, limit)?;
                 patch.first_crossing(ray, start_on(prim, from), &wanted)
@@ -146,7 +191,7 @@ impl Scene {
             Surface::Triangle(body, triangle) => {
                 // Most triangles are missed; whether a crossing counts is checked only for the
                 // others.
-                let crossing = body.mesh.crossing_of(triangle, line?)?;
+                let crossing = body.mesh.crossing_of(triangle, met.line?)?;
                 let wanted = self.wanted(body.owner, inside, limit)?;
                 (wanted.includes(&crossing) && !from.contains(prim)).then_some(crossing)
             }
@@ -181,10 +226,8 @@ impl Scene {
             StartSide::Ahead => self.tolerance,
             StartSide::Behind => -self.tolerance,
         };
-        let line = self.line(ray);
-        self.accel.visit(ray, |index| {
-            let surface = self.surface(PrimId::new(index));
-            surface.crossings(ray, line.as_ref(), RayStart::Elsewhere, |crossing| {
+        self.visit(ray, f64::INFINITY, |_, Met { surface, line }| {
+            surface.crossings(ray, line, RayStart::Elsewhere, |crossing| {
                 if let Owner::Solid(solid) = surface.owner() {
                     let slot = &mut nearest[solid.index()];
                     if crossing.t > beyond && crossing.t < slot.0 {
@@ -192,7 +235,6 @@ impl Scene {
                     }
                 }
             });
-            f64::INFINITY
         });
         nearest
             .iter()
@@ -204,12 +246,8 @@ impl Scene {
 
     /// Every crossing ahead of a ray with the surfaces of solids and sheets, in any order.
     pub fn all_crossings(&self, ray: &Ray, mut visit: impl FnMut(PrimId, Crossing)) {
-        let line = self.line(ray);
-        self.accel.visit(ray, |index| {
-            let prim = PrimId::new(index);
-            let visit = |crossing| visit(prim, crossing);
-            self.surface(prim).crossings(ray, line.as_ref(), RayStart::Elsewhere, visit);
-            f64::INFINITY
+        self.visit(ray, f64::INFINITY, |prim, Met { surface, line }| {
+            surface.crossings(ray, line, RayStart::Elsewhere, |crossing| visit(prim, crossing));
         });
     }
 
@@ -217,6 +255,26 @@ impl Scene {
     #[inline]
     fn line(&self, ray: &Ray) -> Option<TriangleLine> {
         (!self.meshes.is_empty()).then(|| TriangleLine::of(ray))
+    }
+}
+
+/// A surface that a ray may cross.
+#[derive(Clone, Copy)]
+struct Met<'s> {
+    surface: Surface<'s>,
+    /// The line of the ray in the coordinates of a triangle; none without triangles.
+    line: Option<&'s TriangleLine>,
+}
+
+impl MeshBody {
+    /// Calls `visit` with every triangle of a copy whose box the ray meets before `limit`, mm, and the smallest distance that
+    /// `visit` has returned.
+    #[inline(always)]
+    fn visit_copy(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(PrimId, Met<'_>) -> f64) {
+        self.visit_triangles(ray, limit, |triangle, line| {
+            let surface = Surface::Triangle(self, triangle);
+            visit(PrimId::new(self.first + triangle), Met { surface, line: Some(line) })
+        });
     }
 }
 

@@ -1,9 +1,9 @@
 //! Queries on surfaces, whether they are analytic patches or triangles of a mesh.
 
 use crate::scene::Ray;
-use crate::scene::mesh::TriangleLine;
+use crate::scene::mesh::{MeshBody, TriangleLine};
 use crate::scene::shape::{ChartRect, Crossing, RayStart, Region, Shape};
-use crate::scene::{FaceId, MeshBody, Owner, Patch, PieceRange, PrimId, Scene, SmoothId};
+use crate::scene::{FaceId, MeshPieces, Owner, Patch, PieceRange, PrimId, Scene, SmoothId};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
 
@@ -76,7 +76,9 @@ impl Scene {
         match self.patches.get(index) {
             Some(patch) => Surface::Patch(patch),
             None => {
-                let body = match self.meshes.as_slice() {
+                let is_copied = index >= self.first_of_copies;
+                let bodies = if is_copied { &self.copies } else { &self.meshes };
+                let body = match bodies.as_slice() {
                     [body] => body,
                     bodies => &bodies[bodies.partition_point(|body| body.first <= index) - 1],
                 };
@@ -96,7 +98,7 @@ impl Scene {
     pub fn normal(&self, prim: PrimId, point: DVec3) -> DVec3 {
         match self.surface(prim) {
             Surface::Patch(patch) => patch.shape.normal(point),
-            Surface::Triangle(body, triangle) => body.mesh.facet_normal(triangle),
+            Surface::Triangle(body, triangle) => body.facet_normal(triangle),
         }
     }
 
@@ -106,10 +108,12 @@ impl Scene {
         match self.surface(prim) {
             // Patches are numbered within their face.
             Surface::Patch(patch) => SmoothId::of(patch.face.index() as u32, patch.smooth),
-            // Triangles are numbered within their mesh; meshes count down from the largest number.
+            // Triangles are numbered within their body; bodies count down from the largest number.
             Surface::Triangle(body, triangle) => {
-                let mesh = self.meshes.partition_point(|other| other.first < body.first);
-                SmoothId::of(u32::MAX - mesh as u32, body.mesh.smooth_id(triangle))
+                let before =
+                    |bodies: &[MeshBody]| bodies.partition_point(|other| other.first < body.first);
+                let place = before(&self.meshes) + before(&self.copies);
+                SmoothId::of(u32::MAX - place as u32, body.mesh.smooth_id(triangle))
             }
         }
     }
@@ -134,21 +138,19 @@ impl Scene {
         match &self.faces[face.index()].extent {
             PieceRange::Patches(range) => &self.patches[range.clone()],
             PieceRange::Ports(range) => &self.ports[range.clone()],
-            PieceRange::Mesh { .. } => &[],
+            PieceRange::Mesh(_) => &[],
         }
     }
 
     /// Area of a face, mm².
     pub fn face_area(&self, face: FaceId) -> f64 {
-        match self.mesh_face(face) {
-            Some((body, index)) => body.mesh.face_area(index),
-            None => self.face_patches(face).iter().map(Patch::area).sum(),
-        }
+        let patches: f64 = self.face_patches(face).iter().map(Patch::area).sum();
+        patches + self.mesh_pieces(face).map(|(body, index)| body.face_area(index)).sum::<f64>()
     }
 
     /// Area of the part of a face whose chart lies in `rect`, mm².
     pub fn face_area_in(&self, face: FaceId, rect: ChartRect) -> f64 {
-        match self.mesh_face(face) {
+        match self.charted_mesh(face) {
             Some((body, index)) => {
                 body.planes[index].map_or(0.0, |plane| body.mesh.chart_area_in(index, &plane, rect))
             }
@@ -158,7 +160,7 @@ impl Scene {
 
     /// Area of the chart within `rect` that a face fills, mm²; 0 for a curved face of a mesh, which has no chart.
     pub fn face_charted_in(&self, face: FaceId, rect: ChartRect) -> f64 {
-        match self.mesh_face(face) {
+        match self.charted_mesh(face) {
             // Charts of flat faces keep areas.
             Some(_) => self.face_area_in(face, rect),
             None => self.face_patches(face).iter().map(|patch| patch.charted_in(rect)).sum(),
@@ -167,7 +169,7 @@ impl Scene {
 
     /// The rectangle that a face's chart covers, mm; `None` for a curved face of a mesh.
     pub fn face_rect(&self, face: FaceId) -> Option<ChartRect> {
-        match self.mesh_face(face) {
+        match self.charted_mesh(face) {
             Some((body, index)) => {
                 body.planes[index].map(|plane| body.mesh.chart_bounds(index, &plane))
             }
@@ -179,7 +181,7 @@ impl Scene {
 
     /// The frame of a flat face: its middle, z along the outward normal, and the axes of its chart.
     pub fn face_plane(&self, face: FaceId) -> Option<Frame> {
-        if let Some((body, index)) = self.mesh_face(face) {
+        if let Some((body, index)) = self.charted_mesh(face) {
             return body.planes[index];
         }
         match self.face_patches(face) {
@@ -210,10 +212,28 @@ impl Scene {
         self.faces[face.index()].owner
     }
 
-    fn mesh_face(&self, face: FaceId) -> Option<(&MeshBody, usize)> {
-        match self.faces[face.index()].extent {
-            PieceRange::Mesh { mesh, face } => Some((&self.meshes[mesh], face)),
+    /// Whether a surface is a triangle of a copy of a mesh.
+    pub(crate) fn is_copied(&self, prim: PrimId) -> bool {
+        prim.index() >= self.first_of_copies && !self.copies.is_empty()
+    }
+
+    /// The bodies of triangles that a face is part of, with its number in each.
+    pub(crate) fn mesh_pieces(&self, face: FaceId) -> impl Iterator<Item = (&MeshBody, usize)> {
+        let pieces = match &self.faces[face.index()].extent {
+            PieceRange::Mesh(pieces) => Some(pieces),
             PieceRange::Patches(_) | PieceRange::Ports(_) => None,
-        }
+        };
+        pieces.into_iter().flat_map(|MeshPieces { own, copies }| {
+            let own = own.iter().map(|(mesh, face)| (&self.meshes[*mesh], *face));
+            own.chain(copies.iter().flat_map(|(copies, face)| {
+                self.copies[copies.clone()].iter().map(|copy| (copy, *face))
+            }))
+        })
+    }
+
+    /// The mesh of a face that is part of no other, with its number there.
+    fn charted_mesh(&self, face: FaceId) -> Option<(&MeshBody, usize)> {
+        let mut pieces = self.mesh_pieces(face);
+        pieces.next().filter(|_| pieces.next().is_none())
     }
 }

@@ -18,14 +18,22 @@ pub struct TriangleLine {
     dir: DVec3,
     /// Two directions across the line; with `dir` they form a right-handed frame.
     across: [DVec3; 2],
+    /// Distance in the scene over that along the line, 1.
+    scale: f64,
 }
 
 impl TriangleLine {
     /// The line of a ray.
     #[inline]
     pub fn of(ray: &Ray) -> Self {
+        Self::scaled(ray, 1.0)
+    }
+
+    /// The line of a ray in coordinates in which lengths are those of the scene over `scale`.
+    #[inline]
+    pub(super) fn scaled(ray: &Ray, scale: f64) -> Self {
         let (x, y) = ray.dir().any_orthonormal_pair();
-        Self { origin: ray.origin(), dir: ray.dir(), across: [x, y] }
+        Self { origin: ray.origin(), dir: ray.dir(), across: [x, y], scale }
     }
 
     /// The direction in which the line crosses a triangle, if it does. Edges and vertices count,
@@ -55,7 +63,7 @@ impl TriangleLine {
         let farthest = along[0].max(along[1]).max(along[2]);
         let t = (corners[0] - self.origin).dot(normal) / self.dir.dot(normal);
         // `max` also replaces a NaN t.
-        t.max(nearest).min(farthest)
+        self.scale * t.max(nearest).min(farthest)
     }
 
     #[inline]

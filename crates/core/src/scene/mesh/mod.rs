@@ -6,10 +6,12 @@
 //! there. A path that leaves a triangle skips that triangle; otherwise orientation decides, not a
 //! small distance. The mesh does not know finishes, media, or the tree that finds the candidates.
 
+mod body;
 mod chart;
 mod line;
 mod patch;
 
+pub use body::{MeshBody, MeshPlace};
 pub use line::TriangleLine;
 
 use crate::scene::Ray;
@@ -23,7 +25,7 @@ use lumiduct_base::mesh::{TriangleMesh, area_vector};
 /// surfaces differ by far more.
 const FLATNESS: f64 = 1.0 / (1u64 << 22) as f64;
 
-/// A mesh placed in the scene.
+/// A mesh of triangles.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     /// Positions of the vertices, mm; triangles share them, so that more of a mesh fits in the cache.
@@ -148,6 +150,11 @@ impl Mesh {
     #[inline]
     pub(crate) fn smooth_id(&self, triangle: usize) -> u32 {
         self.smooth_ids[triangle]
+    }
+
+    /// Number of smooth patches.
+    pub(crate) fn patch_count(&self) -> usize {
+        self.smooth_ids.iter().max().map_or(0, |last| *last as usize + 1)
     }
 
     /// The face of a triangle; faces are numbered from 0.
@@ -349,7 +356,7 @@ mod tests {
     #[test]
     fn light_in_the_guide_of_the_scenes_stays_in_until_an_end() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes/lightguide.glb");
-        let mesh = Mesh::new(&read(&path, LengthUnit::Metre).unwrap(), &Frame::WORLD);
+        let mesh = Mesh::new(&read(&path, LengthUnit::Metre).unwrap().mesh, &Frame::WORLD);
         let face = |name| mesh.face_names().position(|other| other == name).unwrap();
         let (entry, wall, exit) = (face("entry"), face("wall"), face("exit"));
         assert!(mesh.chart_plane(entry).is_some() && mesh.chart_plane(exit).is_some());

@@ -70,12 +70,9 @@ impl Scene {
                 .face_patches(face)
                 .iter()
                 .fold(Aabb::EMPTY, |bounds, patch| bounds.union(patch.shape.bounds())),
-            PieceRange::Mesh { mesh, face } => {
-                let mesh = &self.meshes[*mesh].mesh;
-                let triangles = mesh.face_triangles(*face).iter();
-                triangles.fold(Aabb::EMPTY, |bounds, triangle| {
-                    bounds.union(mesh.bounds(*triangle as usize))
-                })
+            PieceRange::Mesh(_) => {
+                let pieces = self.mesh_pieces(face).map(|(body, index)| body.face_bounds(index));
+                pieces.fold(Aabb::EMPTY, Aabb::union)
             }
         }
     }

@@ -3,8 +3,9 @@
 //! It knows faces of all kinds: analytic pieces, open ports, and faces of meshes. It does not know
 //! sensors or paths.
 
+use crate::scene::mesh::MeshBody;
 use crate::scene::shape::{Crossing, RayStart};
-use crate::scene::{FaceId, MeshBody, Patch, PieceRange, PrimId, Ray, Scene};
+use crate::scene::{FaceId, Patch, PieceRange, PrimId, Ray, Scene};
 use glam::{DVec2, DVec3};
 
 /// Some faces as one area.
@@ -14,6 +15,8 @@ pub struct FaceArea<'s> {
     pieces: Vec<AreaPiece<'s>>,
     /// Area up to and including each piece, mm².
     area_up_to: Vec<f64>,
+    /// Those of the faces that copies of meshes are part of.
+    copied: Vec<FaceId>,
 }
 
 /// A part of the area.
@@ -51,7 +54,9 @@ impl<'s> FaceArea<'s> {
                 area
             })
             .collect();
-        Self { scene, pieces, area_up_to }
+        let is_copied = |face: &FaceId| scene.mesh_pieces(*face).any(|(body, _)| body.is_copy());
+        let copied = faces.iter().copied().filter(is_copied).collect();
+        Self { scene, pieces, area_up_to, copied }
     }
 
     /// Its patch, with the surface it is, if it has no other piece.
@@ -84,13 +89,11 @@ impl<'s> FaceArea<'s> {
     /// the area.
     pub(crate) fn density_toward(&self, ray: &Ray) -> f64 {
         let mut sum = 0.0;
-        for piece in &self.pieces {
-            piece.crossings(ray, |t, normal| {
-                if t > 0.0 {
-                    sum += t * t / ray.dir().dot(normal).abs();
-                }
-            });
-        }
+        self.crossings(ray, |t, normal| {
+            if t > 0.0 {
+                sum += t * t / ray.dir().dot(normal).abs();
+            }
+        });
         sum / self.area()
     }
 
@@ -99,14 +102,25 @@ impl<'s> FaceArea<'s> {
     /// meets the area.
     pub(crate) fn density_across(&self, ray: &Ray) -> f64 {
         let mut sum = 0.0;
-        for piece in &self.pieces {
-            piece.crossings(ray, |t, normal| {
-                if t > 0.0 {
-                    sum += 1.0 / ray.dir().dot(normal).abs();
+        self.crossings(ray, |t, normal| {
+            if t > 0.0 {
+                sum += 1.0 / ray.dir().dot(normal).abs();
+            }
+        });
+        sum / self.area()
+    }
+
+    /// Every point where a ray's line meets the area: distance along the ray, mm, and unit normal.
+    fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
+        let Self { scene, copied, .. } = self;
+        self.pieces.iter().for_each(|piece| piece.crossings(ray, &mut visit));
+        if !copied.is_empty() {
+            scene.all_crossings(ray, |prim, Crossing { t, .. }| {
+                if scene.is_copied(prim) && copied.contains(&scene.face_of(prim)) {
+                    visit(t, scene.normal(prim, ray.at(t)));
                 }
             });
         }
-        sum / self.area()
     }
 }
 
@@ -119,7 +133,9 @@ fn pieces_of(scene: &Scene, face: FaceId) -> Vec<AreaPiece<'_>> {
         PieceRange::Ports(range) => {
             scene.ports[range.clone()].iter().map(|patch| AreaPiece::Patch(patch, None)).collect()
         }
-        PieceRange::Mesh { mesh, face } => vec![AreaPiece::Mesh(&scene.meshes[*mesh], *face)],
+        PieceRange::Mesh(_) => {
+            scene.mesh_pieces(face).map(|(body, face)| AreaPiece::Mesh(body, face)).collect()
+        }
     }
 }
 
@@ -127,7 +143,7 @@ impl AreaPiece<'_> {
     fn area(&self) -> f64 {
         match self {
             Self::Patch(patch, _) => patch.shape.area(),
-            Self::Mesh(body, face) => body.mesh.face_area(*face),
+            Self::Mesh(body, face) => body.face_area(*face),
         }
     }
 
@@ -139,16 +155,16 @@ impl AreaPiece<'_> {
                 Some(AreaPoint { point, normal, uv, prim: *prim })
             }
             Self::Mesh(body, face) => {
-                let found = body.mesh.sample(*face, u)?;
+                let found = body.sample(*face, u)?;
                 let prim = PrimId::new(body.first + found.triangle);
-                let normal = body.mesh.facet_normal(found.triangle);
+                let normal = body.facet_normal(found.triangle);
                 let uv = scene.chart(prim, found.point);
                 Some(AreaPoint { point: found.point, normal, uv, prim: Some(prim) })
             }
         }
     }
 
-    /// Every point where the ray's line meets it: distance along the ray, mm, and unit normal.
+    /// Every point where the ray's line meets it, except of a copy.
     fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
         match self {
             Self::Patch(patch, _) => {
@@ -156,11 +172,12 @@ impl AreaPiece<'_> {
                     visit(t, patch.shape.normal(ray.at(t)));
                 });
             }
+            Self::Mesh(body, _) if body.is_copy() => {}
             Self::Mesh(body, face) => {
                 for &triangle in body.mesh.face_triangles(*face) {
                     let triangle = triangle as usize;
                     if let Some(Crossing { t, .. }) = body.mesh.crossing(triangle, ray) {
-                        visit(t, body.mesh.facet_normal(triangle));
+                        visit(t, body.facet_normal(triangle));
                     }
                 }
             }

@@ -1,6 +1,7 @@
 //! The sphere around everything in a scene, from which far fields start.
 
 use crate::scene::Scene;
+use crate::scene::mesh::MeshBody;
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
 
@@ -15,7 +16,7 @@ impl Around {
     /// That of a scene.
     pub(super) fn of(scene: &Scene) -> Self {
         let solids = scene.patches.iter().map(|patch| patch.shape.bounds());
-        let meshes = scene.meshes.iter().map(|body| body.bounds());
+        let meshes = scene.mesh_bodies().map(MeshBody::bounds);
         let sources = scene.sources.iter().map(|source| source.emitter.bounds());
         let bounds = solids.chain(meshes).chain(sources).fold(Aabb::EMPTY, Aabb::union);
         // Slightly larger, for rounding, and a nanometre around a point that is alone.

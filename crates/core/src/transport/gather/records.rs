@@ -130,11 +130,14 @@ impl GatherRecord<'_> {
 #[derive(Debug)]
 pub struct Records<'s> {
     pub(crate) all: Vec<GatherRecord<'s>>,
-    /// By surface: the positions of its records, and their directions.
+    /// By surface, or by the last bits of its number where there are very many: positions and directions of its records.
     reach: Vec<Reach>,
     along: Index,
     scattered: Index,
 }
+
+/// Most boxes of that kind: every facet of a mesh may be a surface of its own.
+const MOST_REACHES: usize = 1 << 12;
 
 /// Boxes around the windows of the records of a surface.
 #[derive(Debug, Clone, Copy)]
@@ -153,11 +156,12 @@ impl<'s> Records<'s> {
     ) -> Option<Self> {
         let nowhere = Reach { positions: Aabb::EMPTY, directions: Aabb::EMPTY };
         let everywhere = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
-        let mut reach = vec![nowhere; surfaces.count + surfaces.media];
+        let count = (surfaces.count + surfaces.media).next_power_of_two().min(MOST_REACHES);
+        let mut reach = vec![nowhere; count];
         let (mut along, mut scattered) = (Vec::new(), Vec::new());
         for (id, record) in all.iter().enumerate() {
             let (indexed, dir) = record.indexed(id);
-            let own = &mut reach[indexed.surface as usize];
+            let own = &mut reach[indexed.surface as usize & (count - 1)];
             own.positions = own.positions.union(Aabb::of([indexed.point]).grown(window.radius));
             let directions = dir.map_or(everywhere, |dir| Aabb::of([dir]).grown(window.chord()));
             own.directions = own.directions.union(directions);
@@ -174,7 +178,7 @@ impl<'s> Records<'s> {
     /// Whether a photon on a surface may belong to any record.
     #[inline(always)]
     pub fn may_take(&self, photon: &PhotonKey) -> bool {
-        let reach = &self.reach[photon.surface as usize];
+        let reach = &self.reach[photon.surface as usize & (self.reach.len() - 1)];
         reach.positions.contains(photon.point)
             && reach.directions.contains(photon.dir)
             && (self.along.may_hold(photon)

@@ -44,8 +44,8 @@ pub(super) fn scatter_photon(
                 Toward::Front => -outward,
                 Toward::Back => outward,
             };
-            let facet = facing(body.mesh.facet_normal(triangle));
-            let shading = facing(body.mesh.shading_normal(triangle, point));
+            let facet = facing(body.facet_normal(triangle));
+            let shading = facing(body.shading_normal(triangle, point));
             // An interpolated normal may face away from grazing light; then the facet's normal is
             // used.
             let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
@@ -148,8 +148,8 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
                 Toward::Front => -1.0,
                 Toward::Back => 1.0,
             };
-            let facet = sign * body.mesh.facet_normal(triangle);
-            (sign * body.mesh.shading_normal(triangle, vertex.point), facet, DVec3::ZERO)
+            let facet = sign * body.facet_normal(triangle);
+            (sign * body.shading_normal(triangle, vertex.point), facet, DVec3::ZERO)
         }
     };
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);

@@ -1,33 +1,36 @@
 //! Faces of meshes, with fine triangles joined.
 
-use crate::scene::mesh::Mesh;
+use crate::scene::mesh::MeshBody;
 use crate::scene::picture::facets::triangles::Triangulation;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Largest number of triangles of a face.
+/// Largest number of triangles that are drawn for a face.
 const MOST_TRIANGLES: usize = 3000;
 /// Cubes grow by this factor until the limit is met, 1.
 const GROWTH: f64 = 1.4;
 
-/// A face of a mesh with fine triangles joined: in cubes of `cell` mm, or in larger ones where there are very many.
-pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Triangulation {
+/// Faces of bodies with fine triangles joined: in cubes of `cell` mm, or in larger ones where there are very many.
+pub(super) fn facets(faces: Vec<(&MeshBody, usize)>, cell: f64) -> Triangulation {
     let mut cell = cell;
     loop {
-        if let Some(facets) = joined(mesh, face, cell) {
+        if let Some(facets) = joined(&faces, cell) {
             return facets;
         }
         cell *= GROWTH;
     }
 }
 
-/// A face with all corners in a cube merged, and without the triangles that this collapses; `None` if too many remain.
-fn joined(mesh: &Mesh, face: usize, cell: f64) -> Option<Triangulation> {
+/// Faces with all corners in a cube merged, and without the triangles that this collapses; `None` if too many remain.
+fn joined(faces: &[(&MeshBody, usize)], cell: f64) -> Option<Triangulation> {
     let mut facets = Triangulation::default();
     let mut corner_of: BTreeMap<[i64; 3], usize> = BTreeMap::new();
     let mut known: BTreeSet<[usize; 3]> = BTreeSet::new();
-    for triangle in mesh.face_triangles(face) {
-        let corners = mesh.corners(*triangle as usize).map(|point| {
+    let triangles = faces.iter().flat_map(|(body, face)| {
+        body.mesh.face_triangles(*face).iter().map(|triangle| body.corners(*triangle as usize))
+    });
+    for corners in triangles {
+        let corners = corners.map(|point| {
             let next = facets.points.len();
             let corner = *corner_of.entry(cube(point, cell)).or_insert(next);
             if corner == next {
@@ -56,6 +59,8 @@ fn cube(point: DVec3, cell: f64) -> [i64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::mesh::Mesh;
+    use crate::scene::{FaceId, Owner};
     use lumiduct_base::math::Frame;
     use lumiduct_base::mesh::bodies::{Normals, icosphere};
 
@@ -63,7 +68,7 @@ mod tests {
     fn coarse_meshes_stay_as_they_are_and_fine_ones_keep_their_size_with_fewer_triangles() {
         let of = |level: u32| {
             let mesh = Mesh::new(&icosphere(3.0, level, Normals::None), &Frame::WORLD);
-            facets(&mesh, 0, 1e-3)
+            facets(vec![(&MeshBody::new(mesh, Owner::Sheet, vec![FaceId::new(0)]), 0)], 1e-3)
         };
         let coarse = of(2);
         assert_eq!((coarse.points.len(), coarse.triangles.len()), (162, 320));

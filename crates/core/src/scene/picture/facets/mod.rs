@@ -55,9 +55,11 @@ impl Scene {
             PieceRange::Patches(_) | PieceRange::Ports(_) => {
                 patch_facets(self.face_patches(face), fineness)
             }
-            PieceRange::Mesh { mesh, face } => {
-                let facets = mesh::facets(&self.meshes[*mesh].mesh, *face, fineness.mesh_cell);
-                FaceFacets { facets, one_in: 1 }
+            PieceRange::Mesh(_) => {
+                let bodies: Vec<_> = self.mesh_pieces(face).collect();
+                let one_in = bodies.len().div_ceil(fineness.patches).max(1);
+                let drawn = bodies.into_iter().step_by(one_in).collect();
+                FaceFacets { facets: mesh::facets(drawn, fineness.mesh_cell), one_in }
             }
         }
     }

@@ -1,0 +1,368 @@
+//! A mesh as a body of the scene: in the coordinates of the scene, or one of many copies that share their triangles.
+//!
+//! A ray is taken to the coordinates of a copy, where all triangles see the same line, so that copies have no gaps between
+//! neighbours either. Distances return multiplied by the scale.
+
+use crate::scene::crossing::tree::Tree;
+use crate::scene::mesh::{Mesh, MeshPoint, TriangleLine};
+use crate::scene::{FaceId, Owner, Ray};
+use glam::{DAffine3, DMat3, DVec3};
+use lumiduct_base::math::{Aabb, Frame};
+use std::sync::Arc;
+
+/// Rotation, uniform scale and translation of a copy; never a mirror image.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshPlace {
+    to_scene: DAffine3,
+    from_scene: DAffine3,
+    rotation: DMat3,
+    scale: f64,
+}
+
+impl MeshPlace {
+    /// A place in a frame; `transform` must preserve angles and orientation.
+    pub fn new(transform: &DAffine3, at: &Frame) -> Self {
+        let frame =
+            DAffine3 { matrix3: DMat3::from_cols(at.x, at.y, at.z), translation: at.origin };
+        let to_scene = frame * *transform;
+        let scale = to_scene.matrix3.determinant().cbrt();
+        let rotation = to_scene.matrix3 * scale.recip();
+        Self { to_scene, from_scene: to_scene.inverse(), rotation, scale }
+    }
+
+    fn ray_from_scene(&self, ray: &Ray) -> Ray {
+        let from_scene = &self.from_scene;
+        let origin = from_scene.transform_point3(ray.origin());
+        Ray::new(origin, from_scene.transform_vector3(ray.dir()))
+    }
+
+    /// Largest coordinate, mm, in the copy of a point with coordinates up to `largest` in the scene.
+    fn reach(&self, largest: f64) -> f64 {
+        (3.0_f64.sqrt() * largest + self.to_scene.translation.length()) / self.scale
+    }
+}
+
+/// A closed body of triangles.
+#[derive(Debug, Clone)]
+pub struct MeshBody {
+    /// Its triangles, shared by all copies.
+    pub(crate) mesh: Arc<Mesh>,
+    /// Box around it, mm.
+    bounds: Aabb,
+    /// Where a copy stands; `None` for a mesh in the coordinates of the scene.
+    place: Option<Box<MeshPlace>>,
+    /// The tree over the triangles of a copy; those of all other meshes are in the tree of the scene.
+    tree: Option<Arc<Tree>>,
+    /// The owner of its faces.
+    pub owner: Owner,
+    /// The scene's face of each face of the mesh.
+    pub faces: Arc<[FaceId]>,
+    /// The plane of each face of the mesh that is flat; none of a copy.
+    pub planes: Arc<[Option<Frame>]>,
+    /// Number of its first triangle among all surfaces.
+    pub first: usize,
+}
+
+impl MeshBody {
+    /// A mesh in the coordinates of the scene.
+    pub(crate) fn new(mesh: Mesh, owner: Owner, faces: Vec<FaceId>) -> Self {
+        let planes = (0..faces.len()).map(|face| mesh.chart_plane(face)).collect();
+        let bounds = Aabb::of(mesh.positions.iter().copied());
+        let (mesh, faces) = (Arc::new(mesh), faces.into());
+        Self { mesh, bounds, place: None, tree: None, owner, faces, planes, first: 0 }
+    }
+
+    /// Copies of a mesh.
+    pub(crate) fn copies(
+        mesh: Mesh,
+        places: Vec<MeshPlace>,
+        owner: Owner,
+        faces: Vec<FaceId>,
+    ) -> impl Iterator<Item = Self> {
+        let planes: Arc<[Option<Frame>]> = vec![None; faces.len()].into();
+        let (mesh, faces): (_, Arc<[FaceId]>) = (Arc::new(mesh), faces.into());
+        places.into_iter().map(move |place| Self {
+            mesh: Arc::clone(&mesh),
+            bounds: Aabb::of(
+                mesh.positions.iter().map(|position| place.to_scene.transform_point3(*position)),
+            ),
+            place: Some(Box::new(place)),
+            tree: None,
+            owner,
+            faces: Arc::clone(&faces),
+            planes: Arc::clone(&planes),
+            first: 0,
+        })
+    }
+
+    /// Whether both are copies of one mesh.
+    pub(crate) fn shares_triangles(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+    }
+
+    /// Makes the tree of copies of one mesh; rays start at coordinates up to `largest_coordinate`, mm, in the scene.
+    pub(crate) fn plant(copies: &mut [Self], largest_coordinate: f64) {
+        let Some(first) = copies.first() else { return };
+        let places = copies.iter().filter_map(|copy| copy.place.as_ref());
+        let reach = places.map(|place| place.reach(largest_coordinate)).fold(0.0, f64::max);
+        let mesh = &first.mesh;
+        let tree =
+            Arc::new(Tree::over(mesh.triangle_count(), |triangle| mesh.bounds(triangle), reach));
+        copies.iter_mut().for_each(|copy| copy.tree = Some(Arc::clone(&tree)));
+    }
+
+    /// Calls `visit` with every triangle of a copy whose box the ray meets, and with the ray's line, before `limit` and the
+    /// smallest distance that `visit` has returned, mm.
+    #[inline(always)]
+    pub(crate) fn visit_triangles(
+        &self,
+        ray: &Ray,
+        limit: f64,
+        mut visit: impl FnMut(usize, &TriangleLine) -> f64,
+    ) {
+        let (Some(tree), Some(place)) = (&self.tree, &self.place) else { return };
+        let own = place.ray_from_scene(ray);
+        let line = TriangleLine::scaled(&own, place.scale);
+        tree.visit(&own, limit / place.scale, |triangle| visit(triangle, &line) / place.scale);
+    }
+
+    /// Whether it is a copy.
+    pub(crate) fn is_copy(&self) -> bool {
+        self.place.is_some()
+    }
+
+    /// Number of triangles; they are numbered from 0.
+    pub fn triangle_count(&self) -> usize {
+        self.mesh.triangle_count()
+    }
+
+    /// The three vertices of a triangle, mm.
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.mesh.corners(triangle).map(|corner| self.point_to_scene(corner))
+    }
+
+    /// A box around a triangle, mm.
+    pub(crate) fn triangle_bounds(&self, triangle: usize) -> Aabb {
+        Aabb::of(self.corners(triangle))
+    }
+
+    /// Box around it, mm.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Box around one of its faces, mm; around all of a copy.
+    pub(crate) fn face_bounds(&self, face: usize) -> Aabb {
+        if self.is_copy() {
+            return self.bounds;
+        }
+        let corners = self.mesh.face_triangles(face).iter();
+        Aabb::of(corners.flat_map(|triangle| self.corners(*triangle as usize)))
+    }
+
+    /// Unit normal of a triangle's plane, outward.
+    #[inline]
+    pub(crate) fn facet_normal(&self, triangle: usize) -> DVec3 {
+        self.normal_to_scene(self.mesh.facet_normal(triangle))
+    }
+
+    /// Unit normal of the surface that the mesh approximates at a point of a triangle, outward.
+    #[inline]
+    pub(crate) fn shading_normal(&self, triangle: usize, point: DVec3) -> DVec3 {
+        let own = match &self.place {
+            None => point,
+            Some(place) => place.from_scene.transform_point3(point),
+        };
+        self.normal_to_scene(self.mesh.shading_normal(triangle, own))
+    }
+
+    /// Area of a face, mm².
+    pub(crate) fn face_area(&self, face: usize) -> f64 {
+        let scale = self.place.as_ref().map_or(1.0, |place| place.scale);
+        scale * scale * self.mesh.face_area(face)
+    }
+
+    /// A point of a face, uniform over its area for uniform `u`; `None` for a face without area.
+    pub(crate) fn sample(&self, face: usize, u: [f64; 2]) -> Option<MeshPoint> {
+        let MeshPoint { triangle, point } = self.mesh.sample(face, u)?;
+        Some(MeshPoint { triangle, point: self.point_to_scene(point) })
+    }
+
+    #[inline]
+    fn point_to_scene(&self, point: DVec3) -> DVec3 {
+        match &self.place {
+            None => point,
+            Some(place) => place.to_scene.transform_point3(point),
+        }
+    }
+
+    #[inline]
+    fn normal_to_scene(&self, normal: DVec3) -> DVec3 {
+        match &self.place {
+            None => normal,
+            Some(place) => (place.rotation * normal).normalize(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::rng::{Dimension, Sampler};
+    use crate::scene::{Builder, Hits, Inside, Scene, Solid, SolidId, StartSurfaces};
+    use glam::DQuat;
+    use lumiduct_base::math::uniform_sphere;
+    use lumiduct_base::mesh::TriangleMesh;
+    use lumiduct_base::mesh::bodies::{Normals, icosphere, rod};
+    use lumiduct_base::units::FluxUnit;
+
+    /// Turned, scaled and moved, far from the origin and from each other.
+    fn places() -> Vec<DAffine3> {
+        let place = |index: u32| {
+            let own = f64::from(index);
+            let turn = DQuat::from_euler(glam::EulerRot::XYZ, own, 0.3 + 2.0 * own, -own);
+            let at = DVec3::new(120.0 + 30.0 * own, -30.0 + own * own, 7.0 * own);
+            DAffine3::from_scale_rotation_translation(DVec3::splat(0.3 + 0.4 * own), turn, at)
+        };
+        (0..5).map(place).collect()
+    }
+
+    fn frame() -> Frame {
+        Frame::from_axis(DVec3::new(3.0, -2.0, 1.0), DVec3::new(0.2, 0.5, -0.8))
+    }
+
+    /// A solid of glass in air to which meshes are added.
+    fn scene(add: impl FnOnce(&mut Builder, SolidId)) -> Scene {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let medium = builder.add_medium(Medium::new("glass", 1.5, 0.0));
+        let (name, bounds) = ("body".to_owned(), Aabb::EMPTY);
+        let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
+        add(&mut builder, solid);
+        builder.build()
+    }
+
+    /// Copies of a mesh beside one in the coordinates of the scene, and all of them as meshes of their own.
+    fn both(mesh: &TriangleMesh) -> [Scene; 2] {
+        let finishes = vec![[None; 2]; mesh.faces.len()];
+        let own = Mesh::new(mesh, &frame());
+        let copied = scene(|builder, solid| {
+            let places = places().iter().map(|place| MeshPlace::new(place, &frame())).collect();
+            builder.add_mesh("body", solid, own.clone(), &finishes);
+            let shared = Mesh::new(mesh, &Frame::WORLD);
+            builder.add_mesh_copies("body", solid, (shared, places), &finishes);
+        });
+        let single = scene(|builder, solid| {
+            builder.add_mesh("body", solid, own.clone(), &finishes);
+            for place in places() {
+                let mut moved = mesh.clone();
+                moved.positions.iter_mut().for_each(|p| *p = place.transform_point3(*p));
+                for normal in moved.normals.iter_mut().flatten().flatten() {
+                    *normal = place.transform_vector3(*normal).normalize();
+                }
+                builder.add_mesh("body", solid, Mesh::new(&moved, &frame()), &finishes);
+            }
+        });
+        [copied, single]
+    }
+
+    /// Where a line meets what, all along, and whether it is outside of everything in the end.
+    fn followed(scene: &Scene, ray: &Ray) -> (Vec<(f64, DVec3, String)>, bool) {
+        let (mut ray, mut from, mut inside) = (*ray, StartSurfaces::default(), Inside::default());
+        let (mut met, mut way) = (Vec::new(), 0.0);
+        // A line that touches a vertex may go in and out there again and again.
+        while let Some(hits) = scene.find_next(&ray, &from, &inside).filter(|_| met.len() < 100) {
+            way += hits.distance();
+            ray = ray.advanced(hits.distance());
+            let Hits { nearest, .. } = &hits;
+            let face = scene.faces[nearest.face.index()].name.clone();
+            met.push((way, scene.normal(nearest.prim, ray.origin()), face));
+            hits.cross(&mut inside);
+            from = StartSurfaces::hits(&hits);
+        }
+        (met, inside.is_empty())
+    }
+
+    #[test]
+    fn copies_are_met_like_meshes_of_their_own() {
+        for mesh in [icosphere(3.0, 2, Normals::Smooth), rod(2.0, 9.0, 24, Normals::None)] {
+            let [copied, single] = both(&mesh);
+            let [ours, wanted] = [&copied, &single].map(|scene| scene.bounds.diagonal());
+            assert!((ours - wanted).abs() < 1e-12 * wanted);
+            let (mut crossings, mut touching) = (0, 0);
+            for index in 0..4000 {
+                let mut sampler = Sampler::for_path(51, 0, index);
+                let body = &single.meshes[index as usize % single.meshes.len()];
+                let [a, b, c] = body.corners(index as usize % body.triangle_count());
+                // Every third aims at a vertex, every third at an edge.
+                let target = match index % 3 {
+                    0 => a,
+                    1 => 0.5 * (a + b),
+                    _ => 0.2 * a + 0.3 * b + 0.5 * c,
+                };
+                let away = uniform_sphere(sampler.pair(Dimension::EmitDirection));
+                let ray = Ray::new(target + 300.0 * away, -away);
+                let [ours, wanted] = [&copied, &single].map(|scene| followed(scene, &ray));
+                // A line that touches a vertex or an edge of the silhouette may meet it on the way in alone, or in one scene alone.
+                let touches = |(met, is_outside): &(Vec<(f64, DVec3, String)>, bool)| {
+                    !is_outside || met.windows(2).any(|pair| pair[1].0 - pair[0].0 < 1e-3)
+                };
+                if touches(&ours) || touches(&wanted) {
+                    touching += 1;
+                    continue;
+                }
+                let ((ours, _), (wanted, _)) = (ours, wanted);
+                assert_eq!(ours.len(), wanted.len(), "{ray:?}");
+                crossings += ours.len();
+                for (one, other) in ours.iter().zip(&wanted) {
+                    assert!((one.0 - other.0).abs() < 1e-9, "{one:?} {other:?}");
+                    // At a vertex or an edge either of its triangles may come first.
+                    assert!(
+                        index % 3 != 2 || (one.1.distance(other.1) < 1e-9 && one.2 == other.2),
+                        "{one:?} {other:?}"
+                    );
+                }
+            }
+            assert!(crossings > 7000 && touching < 400, "{crossings} {touching}");
+        }
+    }
+
+    #[test]
+    fn faces_of_copies_have_their_area_their_points_and_no_chart() {
+        let [copied, single] = both(&rod(2.0, 9.0, 24, Normals::Smooth));
+        let exit = copied.face_named("body.exit").unwrap();
+        let exits: f64 = single
+            .faces
+            .iter()
+            .enumerate()
+            .filter(|(_, face)| face.name == "body.exit")
+            .map(|(index, _)| single.face_area(FaceId::new(index)))
+            .sum();
+        assert!((copied.face_area(exit) / exits - 1.0).abs() < 1e-12);
+        assert!(copied.face_rect(exit).is_none() && copied.face_plane(exit).is_none());
+        let area = crate::scene::start::area::FaceArea::new(&copied, &[exit]);
+        for index in 0..200 {
+            let u = Sampler::for_path(52, 0, index).pair(Dimension::EmitPosition);
+            let found = area.sample(u).unwrap();
+            let normal = found.normal;
+            let ray = Ray::new(found.point + normal, -normal);
+            let density = area.density_across(&ray);
+            assert!(density * area.area() > 0.99, "{density}");
+            let back = copied.normal(found.prim.unwrap(), found.point);
+            assert!(back.distance(normal) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn shading_normals_turn_with_the_copy() {
+        let [copied, single] = both(&icosphere(3.0, 2, Normals::Smooth));
+        for (copy, mesh) in copied.copies.iter().zip(&single.meshes[1..]) {
+            for triangle in (0..copy.triangle_count()).step_by(7) {
+                let [a, b, c] = mesh.corners(triangle);
+                let point = 0.2 * a + 0.3 * b + 0.5 * c;
+                let [ours, wanted] = [copy, mesh].map(|own| own.shading_normal(triangle, point));
+                assert!(ours.distance(wanted) < 1e-12);
+            }
+        }
+    }
+}

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use lumiduct_base::mesh::health;
 use lumiduct_files::mesh::{LengthUnit, read};
 use lumiduct_input::{Settings, load};
 use std::f64::consts::{PI, TAU};
@@ -12,8 +11,8 @@ use std::path::Path;
 fn the_light_guide_of_the_scenes_is_sound() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/lightguide.glb");
     let mesh = read(&path, LengthUnit::Metre).unwrap();
-    assert_eq!(mesh.faces, ["entry", "wall", "exit"]);
-    let health = health(&mesh);
+    assert_eq!(mesh.mesh.faces, ["entry", "wall", "exit"]);
+    let health = mesh.health();
     assert!(health.is_sound(), "{health:?}");
     assert_eq!((health.shells, health.opposed_normals.count, &health.facets), (1, 0, &None));
     // A bent rod has the volume of a straight one (Pappus): π r² L, less what 96 facets cut off.

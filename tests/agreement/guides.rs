@@ -102,3 +102,35 @@ fn meshes() {
         &guide(&format!("[solids.pipe.mesh]\nfile = '{file}'\nunit = \"m\"\nmedium = \"acrylic\"")),
     );
 }
+
+/// Bubbles in a plate: copies of one mesh, with a sensor on all of them.
+#[test]
+fn copies_of_a_mesh() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meshes/bubbles.glb");
+    let plate = format!(
+        r#"
+[media.acrylic]
+index = 1.49
+absorption_per_mm = 0.002
+[solids.plate.box]
+size_mm = [40, 4, 60]
+medium = "acrylic"
+at = {{ position_mm = [0, 0, 2], axis = [1, 0, 0], x_axis = [0, 1, 0] }}
+[solids.bubbles.mesh]
+file = '{file}'
+unit = "m"
+medium = "air"
+priority = 1
+[sources.led.rectangle]
+width_mm = 30
+height_mm = 3
+flux_lm = 10
+at = {{ face = "plate.entry", gap_mm = 0.2 }}
+[sensors]
+front = {{ plane = {{ cells = [2, 1] }}, on = "plate.wall_plus_y", counts = "leaving" }}
+met = {{ plane = {{}}, on = "bubbles.bubble", counts = "incident", side = "front" }}
+"#
+    );
+    let few = Gathering { radius_mm: 0.1, angle_deg: 10.0, ..Gathering::to_depth(1) };
+    agree("bubbles", &plate, &[Way::Forward, Way::Backward, Way::Mixed, Way::Gather(few)]);
+}

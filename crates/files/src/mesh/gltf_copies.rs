@@ -20,6 +20,8 @@ use std::collections::{BTreeMap, HashMap};
 const LEAST_SHARED: u64 = 50_000;
 /// Lengths and angles of a place may be off by this, 1: rounding of a matrix in f32.
 const UNDISTORTED: f64 = 1e-5;
+/// Numbers of a transform up to this are taken, mm or 1.
+const HUGE: f64 = 1e15;
 /// Most pairs of boxes that are compared; copies that are still open then are joined.
 const MOST_COMPARED: usize = 200_000_000;
 
@@ -141,8 +143,10 @@ pub(crate) fn copied(copies: &Copies, body: TriangleMesh) -> Result<CopiedBody, 
     let turn = if copies.is_mirrored { mirror() } else { DAffine3::IDENTITY };
     let places = copies.nodes.iter().map(|own| own.to_scene * turn).collect();
     let copied = CopiedBody { body, places };
-    for (bounds, PlacedMesh { node, .. }) in copied.boxes().zip(&copies.nodes) {
-        if !(bounds.largest_coordinate() <= MAX_COORDINATE_MM) {
+    for (bounds, PlacedMesh { node, to_scene, .. }) in copied.boxes().zip(&copies.nodes) {
+        // Larger numbers might overflow to a box without coordinates.
+        let is_huge = to_scene.to_cols_array().iter().any(|own| own.abs() > HUGE);
+        if is_huge || bounds.largest_coordinate() > MAX_COORDINATE_MM {
             let kilometres = MAX_COORDINATE_MM / 1e6;
             return Err(broken(format!("node {node} puts its mesh beyond {kilometres} km")));
         }

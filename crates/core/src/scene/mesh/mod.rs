@@ -60,35 +60,35 @@ pub(crate) struct MeshPoint {
 }
 
 impl Mesh {
-    /// A mesh in the frame `at`. Indices of `mesh` must be valid, as those of every mesh from a
+    /// A copy of a mesh in the frame `at`. Indices of `mesh` must be valid, as those of every mesh from a
     /// file are.
     pub fn new(mesh: &TriangleMesh, at: &Frame) -> Self {
-        // Vertex by vertex, so that triangles share a common vertex to the last bit.
-        let positions: Vec<DVec3> =
-            mesh.positions.iter().map(|position| at.point_to_world(*position)).collect();
-        let triangles = mesh.triangles.clone();
-        let corners = |triangle: &[u32; 3]| triangle.map(|index| positions[index as usize]);
-        let corner_normals: Option<Vec<[DVec3; 3]>> = mesh
-            .normals
-            .as_ref()
-            .map(|all| all.iter().map(|normals| normals.map(|n| at.to_world(n))).collect());
-        let facet_normals = triangles
-            .iter()
-            .enumerate()
-            .map(|(triangle, own)| {
-                facet_normal(&corners(own), corner_normals.as_ref().map(|all| &all[triangle]))
-            })
-            .collect();
+        Self::moved(mesh.clone(), at)
+    }
+
+    /// The same without a copy.
+    pub fn moved(mesh: TriangleMesh, at: &Frame) -> Self {
         let flatness = FLATNESS * mesh.bounds().largest_coordinate();
+        let smooth_ids = patch::smooth_ids(&mesh, flatness);
+        let mut mesh = mesh;
+        // Vertex by vertex, so that triangles share a common vertex to the last bit.
+        mesh.positions.iter_mut().for_each(|position| *position = at.point_to_world(*position));
+        for normal in mesh.normals.iter_mut().flatten().flatten() {
+            *normal = at.to_world(*normal);
+        }
+        let normals = |triangle: usize| mesh.normals.as_ref().map(|all| &all[triangle]);
+        let facet_normals = (0..mesh.triangles.len())
+            .map(|triangle| facet_normal(&mesh.corners(triangle), normals(triangle)))
+            .collect();
         Self {
-            faces: faces(mesh, |triangle| corners(&triangles[triangle])),
-            smooth_ids: patch::smooth_ids(mesh, flatness),
-            face_of: mesh.face_of.clone(),
+            faces: faces(&mesh),
+            smooth_ids,
             facet_normals,
-            corner_normals,
             flatness,
-            triangles,
-            positions,
+            face_of: mesh.face_of,
+            corner_normals: mesh.normals,
+            triangles: mesh.triangles,
+            positions: mesh.positions,
         }
     }
 
@@ -216,7 +216,7 @@ fn weights([a, b, c]: &[DVec3; 3], facet: DVec3, point: DVec3) -> DVec3 {
     weights.max(DVec3::ZERO)
 }
 
-fn faces(mesh: &TriangleMesh, corners: impl Fn(usize) -> [DVec3; 3]) -> Vec<MeshFace> {
+fn faces(mesh: &TriangleMesh) -> Vec<MeshFace> {
     let empty = |name: &String| MeshFace {
         name: name.clone(),
         triangles: Vec::new(),
@@ -227,7 +227,7 @@ fn faces(mesh: &TriangleMesh, corners: impl Fn(usize) -> [DVec3; 3]) -> Vec<Mesh
         let face = &mut faces[*face as usize];
         let before = face.area_up_to.last().copied().unwrap_or(0.0);
         face.triangles.push(triangle as u32);
-        face.area_up_to.push(before + 0.5 * area_vector(corners(triangle)).length());
+        face.area_up_to.push(before + 0.5 * area_vector(mesh.corners(triangle)).length());
     }
     faces
 }

@@ -8,8 +8,16 @@ use std::fmt::Write;
 /// Bounces for which the drift of a faceted wall is reported.
 const DRIFT_BOUNCES: [f64; 3] = [10.0, 100.0, 1000.0];
 
-/// Beyond this drift, 1, the initial skewness is lost and the law of the drift no longer holds.
-const LOST: f64 = 0.3;
+/// Triangles, and the time of a path over that in an exact sweep, 1: the first four measured with the bent rod of docs/cad.md, the last two from
+/// the time to the next triangle of larger rods (docs/speed.md).
+const MEASURED_TIMES: [[f64; 2]; 6] = [
+    [656.0, 2.3],
+    [2156.0, 2.7],
+    [6266.0, 3.0],
+    [20_136.0, 3.7],
+    [100_800.0, 6.0],
+    [979_600.0, 12.0],
+];
 
 /// The report on a mesh, lengths in mm.
 pub fn mesh_report(name: &str, mesh: &MeshAssembly, health: &MeshHealth) -> String {
@@ -64,7 +72,27 @@ pub fn mesh_report(name: &str, mesh: &MeshAssembly, health: &MeshHealth) -> Stri
     defects(&mut text, "slivers", &health.slivers);
     text.push_str("\ncurved walls\n");
     facets(&mut text, health);
+    cost(&mut text, mesh);
     text
+}
+
+/// What tracing it takes.
+fn cost(text: &mut String, mesh: &MeshAssembly) {
+    let megabytes = mesh.memory_bytes() as f64 / 1e6;
+    let ratio = time_over_sweep(mesh.stored_triangles() as f64);
+    _ = writeln!(
+        text,
+        "\ncost\n  memory  about {megabytes:.1} MB\n  time    about {ratio:.1} times that of an exact sweep with bends; straight sweeps are faster still"
+    );
+}
+
+/// Time of a path in a bent rod of this many triangles over that in an exact sweep, 1, interpolated.
+fn time_over_sweep(triangles: f64) -> f64 {
+    let place = MEASURED_TIMES.partition_point(|[count, _]| *count < triangles);
+    let upper = place.clamp(1, MEASURED_TIMES.len() - 1);
+    let [[low, from], [high, to]] = [MEASURED_TIMES[upper - 1], MEASURED_TIMES[upper]];
+    let share = (triangles / low).ln() / (high / low).ln();
+    (from + share * (to - from)).max(1.0)
 }
 
 fn defects(text: &mut String, what: &str, defects: &Defects) {
@@ -95,15 +123,13 @@ fn facets(text: &mut String, health: &MeshHealth) {
                 facets.per_turn()
             );
             for bounces in DRIFT_BOUNCES {
-                let drift = facets.skew_drift(bounces);
-                _ = if drift < LOST {
-                    writeln!(
+                _ = match facets.skew_drift(bounces) {
+                    Some(drift) => writeln!(
                         text,
                         "  {bounces:>5} bounces: skewness drifts by about {:.2} %",
                         100.0 * drift
-                    )
-                } else {
-                    writeln!(text, "  {bounces:>5} bounces: skewness is lost")
+                    ),
+                    None => writeln!(text, "  {bounces:>5} bounces: skewness is lost"),
                 };
             }
             text.push_str("  export vertex normals, or use a sweep\n");

@@ -1,12 +1,18 @@
 //! A mesh with closed bodies that stand at several places and share their triangles.
 
 use crate::math::Aabb;
-use crate::mesh::{MeshHealth, TriangleMesh, health};
+use crate::mesh::TriangleMesh;
+use crate::mesh::health::{CoarseFacets, MeshHealth, health};
 use glam::{DAffine3, DVec3};
 use indexmap::IndexMap;
 
 /// Most triangles of an assembly, those of a copied body counted at each of its places.
 pub const MAX_SHOWN_TRIANGLES: u64 = 1_000_000_000;
+
+/// Memory of a triangle without and with normals while its scene is built, bytes: measured (docs/cad.md).
+pub const TRIANGLE_BYTES: [u64; 2] = [160, 200];
+/// The same of a copy.
+const COPY_BYTES: u64 = 500;
 
 /// Triangles at their places, and copies of bodies.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +85,23 @@ impl MeshAssembly {
         copies.fold(self.mesh.bounds(), Aabb::union)
     }
 
+    /// Number of triangles that are kept in memory.
+    pub fn stored_triangles(&self) -> u64 {
+        let copied = self.copied.iter().map(|copied| &copied.body);
+        copied.chain([&self.mesh]).map(|mesh| mesh.triangles.len() as u64).sum()
+    }
+
+    /// Memory that it takes while its scene is built, about, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        let of = |mesh: &TriangleMesh| {
+            let bytes = TRIANGLE_BYTES[usize::from(mesh.normals.is_some())];
+            bytes * mesh.triangles.len() as u64
+        };
+        let copied = self.copied.iter();
+        let copied = copied.map(|own| of(&own.body) + COPY_BYTES * own.places.len() as u64);
+        of(&self.mesh) + copied.sum::<u64>()
+    }
+
     /// Forgets the normals of corners.
     pub fn drop_normals(&mut self) {
         self.mesh.normals = None;
@@ -89,7 +112,7 @@ impl MeshAssembly {
     pub fn health(&self) -> MeshHealth {
         let mut all = health(&self.mesh);
         for copied in &self.copied {
-            all.add_copies(&health(&copied.body), copied);
+            copied.add_to(&mut all);
         }
         all
     }
@@ -103,18 +126,40 @@ impl CopiedBody {
         })
     }
 
+    /// Adds its copies to the health of others.
+    fn add_to(&self, all: &mut MeshHealth) {
+        let body = health(&self.body);
+        for (all, own) in [
+            (&mut all.open_edges, &body.open_edges),
+            (&mut all.crowded_edges, &body.crowded_edges),
+            (&mut all.inconsistent_edges, &body.inconsistent_edges),
+            (&mut all.degenerate_triangles, &body.degenerate_triangles),
+            (&mut all.slivers, &body.slivers),
+            (&mut all.opposed_normals, &body.opposed_normals),
+        ] {
+            all.count += own.count * self.places.len();
+            all.first = all.first.or(own.first.map(|place| self.in_first_copy(place)));
+        }
+        let rise = body.sagitta_mm.map(|rise| rise * self.scales().fold(0.0, f64::max));
+        all.sagitta_mm = all.sagitta_mm.into_iter().chain(rise).reduce(f64::max);
+        let squares = self.power_of_scales(2);
+        let [own, added] = [all.faceted_mm2(), squares * body.faceted_mm2()];
+        all.area_mm2 += squares * body.area_mm2;
+        // The larger faceted part is typical of all.
+        let typical = if added > own { &body.facets } else { &all.facets };
+        all.facets = typical
+            .map(|facets| CoarseFacets { area_share: (own + added) / all.area_mm2, ..facets });
+        all.signed_volume_mm3 += self.power_of_scales(3) * body.signed_volume_mm3;
+        all.shells += body.shells * self.places.len();
+    }
+
     /// Sum of a power of the scales of all copies, 1.
-    pub(super) fn power_of_scales(&self, power: i32) -> f64 {
+    fn power_of_scales(&self, power: i32) -> f64 {
         self.scales().map(|scale| scale.powi(power)).sum()
     }
 
-    /// Largest scale of its copies, 1.
-    pub(super) fn largest_scale(&self) -> f64 {
-        self.scales().fold(0.0, f64::max)
-    }
-
     /// A point of the body in its first copy, mm.
-    pub(super) fn in_first_copy(&self, point: DVec3) -> DVec3 {
+    fn in_first_copy(&self, point: DVec3) -> DVec3 {
         self.places.first().map_or(point, |place| place.transform_point3(point))
     }
 

@@ -112,6 +112,9 @@ impl MeshBuilder {
             face_of: self.face_of,
             faces: self.faces.into_iter().collect(),
         };
+        mesh.positions.shrink_to_fit();
+        mesh.triangles.shrink_to_fit();
+        mesh.face_of.shrink_to_fit();
         let mut normals = self.normals;
         if normals.iter().flatten().all(|normal| *normal == DVec3::ZERO) {
             return mesh;
@@ -122,6 +125,7 @@ impl MeshBuilder {
                 *normal = facet;
             }
         }
+        normals.shrink_to_fit();
         mesh.normals = Some(normals);
         mesh
     }

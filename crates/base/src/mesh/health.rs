@@ -5,7 +5,7 @@
 mod tests;
 
 use crate::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
-use crate::mesh::{CopiedBody, TriangleMesh, area_vector};
+use crate::mesh::{TriangleMesh, area_vector};
 use glam::DVec3;
 
 /// Below this turn, degrees, two facets belong to one flat face with rounded coordinates.
@@ -22,6 +22,9 @@ const OWN_NORMAL: f64 = 1.0e-3;
 /// Corner normals within this angle of each other, rad, were equal before rounding to 16 bits or
 /// more.
 const SAME_NORMAL: f64 = 1.0e-4;
+
+/// Beyond this drift, 1, the initial skewness is lost.
+const LOST: f64 = 0.3;
 
 /// A triangle thinner than this share of the size of its mesh, 1, is a sliver: single precision
 /// positions, of 6e-8, leave its normal uncertain by hundredths.
@@ -40,11 +43,6 @@ impl Defects {
     fn add(&mut self, place: impl Fn() -> DVec3) {
         self.count += 1;
         self.first.get_or_insert_with(place);
-    }
-
-    fn add_copies(&mut self, body: &Self, copied: &CopiedBody) {
-        self.count += body.count * copied.places.len();
-        self.first = self.first.or(body.first.map(|place| copied.in_first_copy(place)));
     }
 }
 
@@ -86,33 +84,8 @@ impl MeshHealth {
             && self.signed_volume_mm3 > 0.0
     }
 
-    /// Adds the copies of a body.
-    pub(super) fn add_copies(&mut self, body: &Self, copied: &CopiedBody) {
-        for (all, own) in [
-            (&mut self.open_edges, &body.open_edges),
-            (&mut self.crowded_edges, &body.crowded_edges),
-            (&mut self.inconsistent_edges, &body.inconsistent_edges),
-            (&mut self.degenerate_triangles, &body.degenerate_triangles),
-            (&mut self.slivers, &body.slivers),
-            (&mut self.opposed_normals, &body.opposed_normals),
-        ] {
-            all.add_copies(own, copied);
-        }
-        let rise = body.sagitta_mm.map(|rise| rise * copied.largest_scale());
-        self.sagitta_mm = self.sagitta_mm.into_iter().chain(rise).reduce(f64::max);
-        let squares = copied.power_of_scales(2);
-        let [own, added] = [self.faceted_mm2(), squares * body.faceted_mm2()];
-        self.area_mm2 += squares * body.area_mm2;
-        // The larger faceted part is typical of all.
-        let typical = if added > own { &body.facets } else { &self.facets };
-        self.facets = typical
-            .map(|facets| CoarseFacets { area_share: (own + added) / self.area_mm2, ..facets });
-        self.signed_volume_mm3 += copied.power_of_scales(3) * body.signed_volume_mm3;
-        self.shells += body.shells * copied.places.len();
-    }
-
     /// Area of facets that are not smoothed, mm².
-    fn faceted_mm2(&self) -> f64 {
+    pub(super) fn faceted_mm2(&self) -> f64 {
         self.facets.map_or(0.0, |facets| facets.area_share * self.area_mm2)
     }
 }
@@ -135,10 +108,10 @@ impl CoarseFacets {
 
     /// Expected relative drift of the skew invariant after `bounces` in a rod of such facets, 1:
     /// (3.2/N) sqrt(bounces). Light whose skewness drifts leaves the guide where it should stay
-    /// inside.
-    pub fn skew_drift(&self, bounces: f64) -> f64 {
+    /// inside. `None` where the skewness is lost and this law no longer holds.
+    pub fn skew_drift(&self, bounces: f64) -> Option<f64> {
         // Coefficient fitted to rods of 64 to 1024 facets.
-        3.2 / self.per_turn() * bounces.sqrt()
+        Some(3.2 / self.per_turn() * bounces.sqrt()).filter(|drift| *drift < LOST)
     }
 }
 

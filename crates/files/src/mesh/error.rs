@@ -7,10 +7,6 @@ use lumiduct_base::mesh::{MAX_SHOWN_TRIANGLES, UnusableMesh};
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 /// Most memory that copies of the meshes of a file may take, bytes.
 pub const MAX_COPIES_BYTES: u64 = 1 << 30;
-/// Memory per triangle while its scene is built, bytes: measured, 345 with normals (200 copies of
-/// 1,024 triangles against 50).
-pub(crate) const TRIANGLE_BYTES: u64 = 350;
-
 /// Why a mesh could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {

@@ -4,7 +4,7 @@
 //! Many nodes of one mesh share it if it is closed by itself and they turn, scale and move it only. Copies that may touch something
 //! else, by their boxes, are left to be joined with it vertex by vertex, as all other nodes are.
 
-use crate::mesh::error::{MAX_COPIES_BYTES, MeshError, TRIANGLE_BYTES};
+use crate::mesh::error::{MAX_COPIES_BYTES, MeshError};
 use crate::mesh::gltf_buffers::{Buffers, broken};
 use crate::mesh::gltf_nodes::PlacedMesh;
 use glam::{DAffine3, DMat3, DVec3};
@@ -13,7 +13,9 @@ use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mesh, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use lumiduct_base::math::Aabb;
-use lumiduct_base::mesh::{CopiedBody, MAX_COORDINATE_MM, MAX_SHOWN_TRIANGLES, TriangleMesh};
+use lumiduct_base::mesh::{
+    CopiedBody, MAX_COORDINATE_MM, MAX_SHOWN_TRIANGLES, TRIANGLE_BYTES, TriangleMesh,
+};
 use std::collections::{BTreeMap, HashMap};
 
 /// Copies with fewer triangles than this, beyond those of the mesh itself, are joined: one tree over all is searched faster.
@@ -89,13 +91,14 @@ pub(crate) fn refuse_large_copies<'p>(
     placed: impl Iterator<Item = &'p PlacedMesh>,
     counts: &[u64],
 ) -> Result<(), MeshError> {
+    let [_, bytes_of_triangle] = TRIANGLE_BYTES;
     let mut is_known = vec![false; counts.len()];
     let (mut nodes, mut triangles, mut bytes) = (0, 0_u64, 0_u64);
     for PlacedMesh { mesh, .. } in placed {
         let count = counts[mesh.value()];
         (nodes, triangles) = (nodes + 1, triangles.saturating_add(count));
         if std::mem::replace(&mut is_known[mesh.value()], true) {
-            bytes = bytes.saturating_add(count.saturating_mul(TRIANGLE_BYTES));
+            bytes = bytes.saturating_add(count.saturating_mul(bytes_of_triangle));
         }
     }
     if bytes > MAX_COPIES_BYTES {
@@ -269,7 +272,7 @@ mod tests {
 
     #[test]
     fn copies_that_cannot_be_shared_are_counted_before_they_are_made() {
-        let most = (MAX_COPIES_BYTES / (TRIANGLE_BYTES * 96)) as usize;
+        let most = (MAX_COPIES_BYTES / (TRIANGLE_BYTES[1] * 96)) as usize;
         let error = rods(row(most + 2, 1.0)).unwrap_err();
         assert!(matches!(error, MeshError::TooManyCopies { .. }), "{error}");
         for words in ["export fewer copies", "about 1024 MiB", "copies may take 1024 MiB"] {

@@ -90,17 +90,15 @@ impl Context<'_> {
                 .hint("run `lumiduct mesh FILE` to see where");
         }
         if let Some(facets) = &health.facets {
-            let drift = 100.0 * facets.skew_drift(f64::from(DRIFT_BOUNCES));
-            self.problems
-                .warning(
-                    key,
-                    format!(
-                        "`{name}` looks curved but its facets are flat: {:.0} per turn, so skew rays drift by about \
-                         {drift:.1} % in {DRIFT_BOUNCES} bounces",
-                        facets.per_turn()
-                    ),
-                )
-                .hint("export vertex normals, or use a sweep");
+            let drift = match facets.skew_drift(f64::from(DRIFT_BOUNCES)) {
+                Some(drift) => format!("drift by about {:.1} %", 100.0 * drift),
+                None => "lose their skewness".to_owned(),
+            };
+            let turn = facets.per_turn();
+            let message = format!(
+                "`{name}` looks curved but its facets are flat: {turn:.0} per turn, so skew rays {drift} in {DRIFT_BOUNCES} bounces"
+            );
+            self.problems.warning(key, message).hint("export vertex normals, or use a sweep");
         }
     }
 
@@ -137,7 +135,7 @@ impl Context<'_> {
         &mut self,
         name: &str,
         solid: SolidId,
-        MeshAssembly { mesh, copied }: &MeshAssembly,
+        MeshAssembly { mesh, copied }: MeshAssembly,
         finishes: &MeshFinishes,
         frame: &Frame,
     ) {
@@ -146,13 +144,15 @@ impl Context<'_> {
         };
         let mut faces: Vec<FaceId> = Vec::new();
         if !mesh.triangles.is_empty() {
-            let own = Mesh::new(mesh, frame);
-            faces.extend(self.builder.add_mesh(name, solid, own, &of(mesh)));
+            let finishes = of(&mesh);
+            let own = Mesh::moved(mesh, frame);
+            faces.extend(self.builder.add_mesh(name, solid, own, &finishes));
         }
         for CopiedBody { body, places } in copied {
-            let own = Mesh::new(body, &Frame::WORLD);
+            let finishes = of(&body);
+            let own = Mesh::moved(body, &Frame::WORLD);
             let places = places.iter().map(|place| MeshPlace::new(place, frame)).collect();
-            let added = self.builder.add_mesh_copies(name, solid, (own, places), &of(body));
+            let added = self.builder.add_mesh_copies(name, solid, (own, places), &finishes);
             faces.extend(added);
         }
         for face in faces {

@@ -44,7 +44,7 @@ impl<'a> Context<'a> {
             let finishes = self.mesh_finishes(name, &mesh, &declared, &key.field("faces"));
             let frame = frame?;
             let id = add(self, Some(health.signed_volume_mm3))?;
-            self.add_mesh(name, id, &mesh, &finishes, &frame);
+            self.add_mesh(name, id, mesh, &finishes, &frame);
             return Some(());
         }
         // Whether a shape is possible does not depend on its place.

@@ -15,6 +15,7 @@ use crate::scene::{
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
 use lumiduct_base::units::FluxUnit;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Surfaces of a relief overlap by this many ulp of the largest coordinate where they meet:
@@ -140,7 +141,7 @@ impl Builder {
     ) -> Vec<FaceId> {
         let owner = Owner::Solid(solid);
         let number = self.scene.meshes.len();
-        let names: Vec<String> = mesh.face_names().map(|name| format!("{prefix}.{name}")).collect();
+        let names = face_names(prefix, &mesh);
         let own = |face| MeshPieces { own: Some((number, face)), copies: Vec::new() };
         let faces: Vec<FaceId> = names
             .into_iter()
@@ -167,14 +168,20 @@ impl Builder {
         let owner = Owner::Solid(solid);
         let first = self.scene.copies.len();
         let bodies = first..first + places.len();
-        let names: Vec<String> = mesh.face_names().map(|name| format!("{prefix}.{name}")).collect();
+        let of_solid = self.scene.faces.iter().enumerate().filter(|(_, face)| face.owner == owner);
+        let known: HashMap<String, FaceId> =
+            of_solid.map(|(index, face)| (face.name.clone(), FaceId::new(index))).collect();
         let mut faces = Vec::new();
-        for (index, (name, finishes)) in names.into_iter().zip(finishes).enumerate() {
+        let names = face_names(prefix, &mesh).into_iter();
+        for (index, (name, finishes)) in names.zip(finishes).enumerate() {
             let copies = (bodies.clone(), index);
-            let known = self.scene.face_named(&name);
+            let known = known.get(&name).copied();
             match known.map(|face| (face, &mut self.scene.faces[face.index()].extent)) {
                 Some((face, PieceRange::Mesh(pieces))) => {
                     pieces.copies.push(copies);
+                    if let Some((own, face)) = pieces.own {
+                        self.scene.meshes[own].forget_plane(face);
+                    }
                     faces.push(face);
                 }
                 Some((_, PieceRange::Patches(_) | PieceRange::Ports(_))) | None => {
@@ -297,7 +304,7 @@ impl Builder {
         scene
             .copies
             .chunk_by_mut(|one, other| one.shares_triangles(other))
-            .for_each(|copies| MeshBody::plant(copies, reach));
+            .for_each(|copies| MeshBody::build_tree(copies, reach));
         // In the tree copies follow all other surfaces, each as one.
         let bounds =
             |index: usize| match scene.copies.get(index.wrapping_sub(scene.first_of_copies)) {
@@ -324,6 +331,11 @@ impl Builder {
         scene.legs = scene.plain_legs();
         scene
     }
+}
+
+/// Names of the faces of a mesh in the scene.
+fn face_names(prefix: &str, mesh: &Mesh) -> Vec<String> {
+    mesh.face_names().map(|name| format!("{prefix}.{name}")).collect()
 }
 
 impl Relief {

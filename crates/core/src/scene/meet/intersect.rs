@@ -94,7 +94,7 @@ impl Scene {
         let mut nearest = Nearest::NONE;
         tree.visit(ray, f64::INFINITY, |index| {
             if let Some(copy) = self.copy_at(index) {
-                // By value: lent, it would be kept in memory.
+                // Passed by value, so that it stays in registers.
                 nearest = self.nearest_in_copy(copy, ray, from, inside, nearest);
             } else {
                 let prim = PrimId::new(index);

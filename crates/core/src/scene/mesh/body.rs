@@ -1,7 +1,7 @@
 //! A mesh as a body of the scene: in the coordinates of the scene, or one of many copies that share their triangles.
 //!
 //! A ray is taken to the coordinates of a copy, where all triangles see the same line, so that copies have no gaps between
-//! neighbours either. Distances return multiplied by the scale.
+//! neighbours either. Distances along it are multiplied by the scale.
 
 use crate::scene::crossing::tree::Tree;
 use crate::scene::mesh::{Mesh, MeshPoint, TriangleLine};
@@ -15,25 +15,25 @@ use std::sync::Arc;
 pub struct MeshPlace {
     to_scene: DAffine3,
     from_scene: DAffine3,
-    rotation: DMat3,
+    /// Mean scale, 1: a matrix in f32 distorts by 1e-7.
     scale: f64,
 }
 
 impl MeshPlace {
-    /// A place in a frame; `transform` must preserve angles and orientation.
+    /// A place in a frame; `transform` must preserve orientation, and angles to about 1e-5.
     pub fn new(transform: &DAffine3, at: &Frame) -> Self {
         let frame =
             DAffine3 { matrix3: DMat3::from_cols(at.x, at.y, at.z), translation: at.origin };
         let to_scene = frame * *transform;
         let scale = to_scene.matrix3.determinant().cbrt();
-        let rotation = to_scene.matrix3 * scale.recip();
-        Self { to_scene, from_scene: to_scene.inverse(), rotation, scale }
+        Self { to_scene, from_scene: to_scene.inverse(), scale }
     }
 
-    fn ray_from_scene(&self, ray: &Ray) -> Ray {
+    /// A ray in the coordinates of the copy, and distances in the scene over those along it, 1.
+    fn ray_from_scene(&self, ray: &Ray) -> (Ray, f64) {
         let from_scene = &self.from_scene;
-        let origin = from_scene.transform_point3(ray.origin());
-        Ray::new(origin, from_scene.transform_vector3(ray.dir()))
+        let dir = from_scene.transform_vector3(ray.dir());
+        (Ray::new(from_scene.transform_point3(ray.origin()), dir), dir.length().recip())
     }
 
     /// Largest coordinate, mm, in the copy of a point with coordinates up to `largest` in the scene.
@@ -49,7 +49,7 @@ pub struct MeshBody {
     pub(crate) mesh: Arc<Mesh>,
     /// Box around it, mm.
     bounds: Aabb,
-    /// Where a copy stands; `None` for a mesh in the coordinates of the scene.
+    /// The place of a copy; `None` for a mesh in the coordinates of the scene.
     place: Option<Box<MeshPlace>>,
     /// The tree over the triangles of a copy; those of all other meshes are in the tree of the scene.
     tree: Option<Arc<Tree>>,
@@ -57,7 +57,7 @@ pub struct MeshBody {
     pub owner: Owner,
     /// The scene's face of each face of the mesh.
     pub faces: Arc<[FaceId]>,
-    /// The plane of each face of the mesh that is flat; none of a copy.
+    /// The plane of each flat face that has no copies.
     pub planes: Arc<[Option<Frame>]>,
     /// Number of its first triangle among all surfaces.
     pub first: usize,
@@ -95,13 +95,20 @@ impl MeshBody {
         })
     }
 
+    /// Takes the plane from a face that is not all of a face of the scene: it has no chart.
+    pub(crate) fn forget_plane(&mut self, face: usize) {
+        let mut planes = self.planes.to_vec();
+        planes[face] = None;
+        self.planes = planes.into();
+    }
+
     /// Whether both are copies of one mesh.
     pub(crate) fn shares_triangles(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.mesh, &other.mesh)
     }
 
-    /// Makes the tree of copies of one mesh; rays start at coordinates up to `largest_coordinate`, mm, in the scene.
-    pub(crate) fn plant(copies: &mut [Self], largest_coordinate: f64) {
+    /// Builds the tree of all copies of one mesh; rays start at coordinates up to `largest_coordinate`, mm, in the scene.
+    pub(crate) fn build_tree(copies: &mut [Self], largest_coordinate: f64) {
         let Some(first) = copies.first() else { return };
         let places = copies.iter().filter_map(|copy| copy.place.as_ref());
         let reach = places.map(|place| place.reach(largest_coordinate)).fold(0.0, f64::max);
@@ -121,9 +128,9 @@ impl MeshBody {
         mut visit: impl FnMut(usize, &TriangleLine) -> f64,
     ) {
         let (Some(tree), Some(place)) = (&self.tree, &self.place) else { return };
-        let own = place.ray_from_scene(ray);
-        let line = TriangleLine::scaled(&own, place.scale);
-        tree.visit(&own, limit / place.scale, |triangle| visit(triangle, &line) / place.scale);
+        let (own, scale) = place.ray_from_scene(ray);
+        let line = TriangleLine::scaled(&own, scale);
+        tree.visit(&own, limit / scale, |triangle| visit(triangle, &line) / scale);
     }
 
     /// Whether it is a copy.
@@ -200,7 +207,7 @@ impl MeshBody {
     fn normal_to_scene(&self, normal: DVec3) -> DVec3 {
         match &self.place {
             None => normal,
-            Some(place) => (place.rotation * normal).normalize(),
+            Some(place) => (place.from_scene.matrix3.transpose() * normal).normalize(),
         }
     }
 }
@@ -210,6 +217,7 @@ mod tests {
     use super::*;
     use crate::optics::Medium;
     use crate::rng::{Dimension, Sampler};
+    use crate::scene::start::area::FaceArea;
     use crate::scene::{Builder, Hits, Inside, Scene, Solid, SolidId, StartSurfaces};
     use glam::DQuat;
     use lumiduct_base::math::uniform_sphere;
@@ -217,13 +225,14 @@ mod tests {
     use lumiduct_base::mesh::bodies::{Normals, icosphere, rod};
     use lumiduct_base::units::FluxUnit;
 
-    /// Turned, scaled and moved, far from the origin and from each other.
+    /// Turned, scaled and moved, far from the origin and from each other; the last is slightly distorted, as by rounding.
     fn places() -> Vec<DAffine3> {
         let place = |index: u32| {
             let own = f64::from(index);
             let turn = DQuat::from_euler(glam::EulerRot::XYZ, own, 0.3 + 2.0 * own, -own);
             let at = DVec3::new(120.0 + 30.0 * own, -30.0 + own * own, 7.0 * own);
-            DAffine3::from_scale_rotation_translation(DVec3::splat(0.3 + 0.4 * own), turn, at)
+            let scale = DVec3::new(1.0, 1.0 + if index == 4 { 5e-6 } else { 0.0 }, 1.0);
+            DAffine3::from_scale_rotation_translation((0.3 + 0.4 * own) * scale, turn, at)
         };
         (0..5).map(place).collect()
     }
@@ -258,7 +267,7 @@ mod tests {
                 let mut moved = mesh.clone();
                 moved.positions.iter_mut().for_each(|p| *p = place.transform_point3(*p));
                 for normal in moved.normals.iter_mut().flatten().flatten() {
-                    *normal = place.transform_vector3(*normal).normalize();
+                    *normal = (place.matrix3.inverse().transpose() * *normal).normalize();
                 }
                 builder.add_mesh("body", solid, Mesh::new(&moved, &frame()), &finishes);
             }
@@ -331,23 +340,25 @@ mod tests {
     fn faces_of_copies_have_their_area_their_points_and_no_chart() {
         let [copied, single] = both(&rod(2.0, 9.0, 24, Normals::Smooth));
         let exit = copied.face_named("body.exit").unwrap();
-        let exits: f64 = single
-            .faces
-            .iter()
-            .enumerate()
-            .filter(|(_, face)| face.name == "body.exit")
-            .map(|(index, _)| single.face_area(FaceId::new(index)))
-            .sum();
-        assert!((copied.face_area(exit) / exits - 1.0).abs() < 1e-12);
+        let exits: Vec<FaceId> = (0..single.faces.len())
+            .filter(|face| single.faces[*face].name == "body.exit")
+            .map(FaceId::new)
+            .collect();
+        let one_by_one = FaceArea::new(&single, &exits);
+        // Areas take the scale to be even.
+        assert!((copied.face_area(exit) / one_by_one.area() - 1.0).abs() < 1e-5);
         assert!(copied.face_rect(exit).is_none() && copied.face_plane(exit).is_none());
-        let area = crate::scene::start::area::FaceArea::new(&copied, &[exit]);
+        // Not even that of the mesh that is no copy: a point would be found for some of the light alone.
+        assert!(copied.meshes[0].planes[2].is_none() && single.meshes[0].planes[2].is_some());
+        let area = FaceArea::new(&copied, &[exit]);
         for index in 0..200 {
             let u = Sampler::for_path(52, 0, index).pair(Dimension::EmitPosition);
             let found = area.sample(u).unwrap();
             let normal = found.normal;
             let ray = Ray::new(found.point + normal, -normal);
             let density = area.density_across(&ray);
-            assert!(density * area.area() > 0.99, "{density}");
+            let wanted = one_by_one.density_across(&ray) * one_by_one.area();
+            assert!((density * area.area() / wanted - 1.0).abs() < 1e-9, "{density} {wanted}");
             let back = copied.normal(found.prim.unwrap(), found.point);
             assert!(back.distance(normal) < 1e-12);
         }
@@ -356,12 +367,14 @@ mod tests {
     #[test]
     fn shading_normals_turn_with_the_copy() {
         let [copied, single] = both(&icosphere(3.0, 2, Normals::Smooth));
-        for (copy, mesh) in copied.copies.iter().zip(&single.meshes[1..]) {
+        for (index, (copy, mesh)) in copied.copies.iter().zip(&single.meshes[1..]).enumerate() {
+            // A distortion bends interpolated normals otherwise than those of the corners.
+            let most = if index == 4 { 1e-5 } else { 1e-12 };
             for triangle in (0..copy.triangle_count()).step_by(7) {
                 let [a, b, c] = mesh.corners(triangle);
                 let point = 0.2 * a + 0.3 * b + 0.5 * c;
                 let [ours, wanted] = [copy, mesh].map(|own| own.shading_normal(triangle, point));
-                assert!(ours.distance(wanted) < 1e-12);
+                assert!(ours.distance(wanted) < most);
             }
         }
     }

@@ -15,7 +15,9 @@ pub struct FaceArea<'s> {
     pieces: Vec<AreaPiece<'s>>,
     /// Area up to and including each piece, mm².
     area_up_to: Vec<f64>,
-    /// Those of the faces that copies of meshes are part of.
+    /// The pieces that are not copies of meshes.
+    single: Vec<AreaPiece<'s>>,
+    /// The faces that copies of meshes are part of.
     copied: Vec<FaceId>,
 }
 
@@ -56,7 +58,8 @@ impl<'s> FaceArea<'s> {
             .collect();
         let is_copied = |face: &FaceId| scene.mesh_pieces(*face).any(|(body, _)| body.is_copy());
         let copied = faces.iter().copied().filter(is_copied).collect();
-        Self { scene, pieces, area_up_to, copied }
+        let single = pieces.iter().copied().filter(|piece| !piece.is_copy()).collect();
+        Self { scene, pieces, area_up_to, single, copied }
     }
 
     /// Its patch, with the surface it is, if it has no other piece.
@@ -110,10 +113,10 @@ impl<'s> FaceArea<'s> {
         sum / self.area()
     }
 
-    /// Every point where a ray's line meets the area: distance along the ray, mm, and unit normal.
+    /// Every point where a ray meets the area ahead, and many behind: distance along the ray, mm, and unit normal.
     fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
-        let Self { scene, copied, .. } = self;
-        self.pieces.iter().for_each(|piece| piece.crossings(ray, &mut visit));
+        let Self { scene, single, copied, .. } = self;
+        single.iter().for_each(|piece| piece.crossings(ray, &mut visit));
         if !copied.is_empty() {
             scene.all_crossings(ray, |prim, Crossing { t, .. }| {
                 if scene.is_copied(prim) && copied.contains(&scene.face_of(prim)) {
@@ -140,6 +143,13 @@ fn pieces_of(scene: &Scene, face: FaceId) -> Vec<AreaPiece<'_>> {
 }
 
 impl AreaPiece<'_> {
+    fn is_copy(&self) -> bool {
+        match self {
+            Self::Patch(..) => false,
+            Self::Mesh(body, _) => body.is_copy(),
+        }
+    }
+
     fn area(&self) -> f64 {
         match self {
             Self::Patch(patch, _) => patch.shape.area(),
@@ -164,7 +174,7 @@ impl AreaPiece<'_> {
         }
     }
 
-    /// Every point where the ray's line meets it, except of a copy.
+    /// Every point where the ray's line meets it: distance along the ray, mm, and unit normal.
     fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
         match self {
             Self::Patch(patch, _) => {
@@ -172,7 +182,6 @@ impl AreaPiece<'_> {
                     visit(t, patch.shape.normal(ray.at(t)));
                 });
             }
-            Self::Mesh(body, _) if body.is_copy() => {}
             Self::Mesh(body, face) => {
                 for &triangle in body.mesh.face_triangles(*face) {
                     let triangle = triangle as usize;

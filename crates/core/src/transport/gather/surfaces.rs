@@ -80,3 +80,49 @@ struct CopySlots {
     first: Slot,
     mesh: Arc<Mesh>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::scene::mesh::MeshPlace;
+    use crate::scene::{Builder, Solid};
+    use glam::{DAffine3, DVec3};
+    use lumiduct_base::math::{Aabb, Frame};
+    use lumiduct_base::mesh::bodies::{Normals, rod};
+    use lumiduct_base::units::FluxUnit;
+
+    #[test]
+    fn triangles_have_the_same_number_where_they_are_of_one_smooth_surface() {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let medium = builder.add_medium(Medium::new("glass", 1.5, 0.0));
+        let (name, bounds) = ("rods".to_owned(), Aabb::EMPTY);
+        let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
+        let finishes = [[None; 2]; 3];
+        let rods = [Normals::Smooth, Normals::None].map(|normals| rod(2.0, 9.0, 6, normals));
+        for (step, rod) in rods.iter().enumerate() {
+            let mesh = Mesh::new(rod, &Frame::WORLD);
+            let place = |x: f64| {
+                let at = DAffine3::from_translation(DVec3::new(x, 9.0 * step as f64, 0.0));
+                MeshPlace::new(&at, &Frame::WORLD)
+            };
+            let places = [10.0, 20.0, 30.0].map(place).to_vec();
+            builder.add_mesh_copies("rods", solid, (mesh, places), &finishes);
+        }
+        builder.add_mesh("other", solid, Mesh::new(&rods[0], &Frame::WORLD), &finishes);
+        let scene = builder.build();
+        let numbers = SurfaceNumbers::new(&scene);
+        let triangles = 7 * 24;
+        // Three for each of four rods with normals, and eight for each of three without.
+        assert_eq!(numbers.count, 4 * 3 + 3 * 8);
+        for one in 0..triangles {
+            for other in 0..triangles {
+                let prims = [one, other].map(PrimId::new);
+                let [a, b] = prims.map(|prim| numbers.of(prim));
+                let [c, d] = prims.map(|prim| scene.smooth(prim));
+                assert_eq!(a == b, c == d, "{one} {other}");
+                assert!((a as usize) < numbers.count);
+            }
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! A mesh with closed bodies that stand at several places and share their triangles.
+//! A mesh with closed bodies that are shown at several places and share their triangles.
 
 use crate::math::Aabb;
 use crate::mesh::TriangleMesh;
@@ -23,7 +23,7 @@ pub struct MeshAssembly {
     pub copied: Vec<CopiedBody>,
 }
 
-/// A body and where its copies stand.
+/// A body and the places of its copies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CopiedBody {
     /// The body, in coordinates of its own.
@@ -83,12 +83,6 @@ impl MeshAssembly {
     pub fn bounds(&self) -> Aabb {
         let copies = self.copied.iter().flat_map(CopiedBody::boxes);
         copies.fold(self.mesh.bounds(), Aabb::union)
-    }
-
-    /// Number of triangles that are kept in memory.
-    pub fn stored_triangles(&self) -> u64 {
-        let copied = self.copied.iter().map(|copied| &copied.body);
-        copied.chain([&self.mesh]).map(|mesh| mesh.triangles.len() as u64).sum()
     }
 
     /// Memory that it takes while its scene is built, about, bytes.
@@ -175,7 +169,7 @@ mod tests {
     use glam::DQuat;
 
     #[test]
-    fn copies_count_as_often_as_they_stand_with_their_scales() {
+    fn copies_count_at_each_place_with_their_scales() {
         let ball = icosphere(1.0, 2, Normals::None);
         let place = |scale: f64, x: f64| {
             let turned = DQuat::from_rotation_y(x);

@@ -10,6 +10,6 @@ fuzz_target!(|input: (u8, &[u8])| {
     let (format, bytes) = input;
     let format = [MeshFormat::Gltf, MeshFormat::Stl, MeshFormat::Obj][usize::from(format % 3)];
     if let Ok(mesh) = parse(bytes, format, Path::new("/no/where"), LengthUnit::Metre) {
-        assert!(mesh.positions.iter().all(|corner| corner.is_finite()));
+        assert!(mesh.mesh.positions.iter().all(|corner| corner.is_finite()));
     }
 });

@@ -9,8 +9,8 @@ use crate::mesh::error::MeshError;
 use crate::mesh::format::LengthUnit;
 use crate::mesh::gltf_buffers::{Buffers, broken};
 use crate::mesh::gltf_copies::{
-    Copies, copied, grouped, mirror, refuse_impossible_copies, refuse_large_copies, touching,
-    triangle_counts,
+    Copies, copied, grouped, mirror, refuse_impossible_copies, refuse_large_copies,
+    refuse_large_meshes, touching, triangle_counts,
 };
 use crate::mesh::gltf_nodes::{PlacedMesh, placed_meshes};
 use crate::mesh::gltf_primitive::add_primitive;
@@ -20,6 +20,8 @@ use lumiduct_base::math::Aabb;
 use lumiduct_base::mesh::{CopiedBody, MeshAssembly, MeshBuilder, is_closed};
 use std::path::Path;
 
+/// The extension that shows a mesh many times by one node.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Length of a GLB's header, bytes.
 const GLB_HEADER: usize = 12;
 
@@ -39,14 +41,17 @@ pub(crate) fn read(
     let placed = placed_meshes(&root, unit.millimetres())?;
     let counts = triangle_counts(&root, &buffers, &placed)?;
     refuse_impossible_copies(&placed, &counts)?;
-    let (groups, mut others) = grouped(placed, &counts);
-    refuse_large_copies(others.iter(), &counts)?;
+    let (groups, others) = grouped(placed, &counts);
+    refuse_large_meshes(&groups, &others, &counts)?;
+    let (closed, open) = document.bodies(groups)?;
+    let mut joined = [others, open].concat();
+    refuse_large_copies(&joined, &counts)?;
     let mut builder = MeshBuilder::default();
-    document.add(&mut builder, &others)?;
-    let (shared, joined) = document.shared(groups, builder.positions())?;
-    others.extend(&joined);
-    refuse_large_copies(others.iter(), &counts)?;
     document.add(&mut builder, &joined)?;
+    let (shared, near) = apart(closed, builder.positions());
+    joined.extend(&near);
+    refuse_large_copies(&joined, &counts)?;
+    document.add(&mut builder, &near)?;
     Ok(builder.finish_with(shared)?)
 }
 
@@ -69,39 +74,42 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// Bodies that nodes share, and the nodes that must be joined with others, of which the vertices are known.
-    fn shared(
-        self,
-        groups: Vec<Copies>,
-        vertices: &[DVec3],
-    ) -> Result<(Vec<CopiedBody>, Vec<PlacedMesh>), MeshError> {
-        let (mut shared, mut joined) = (Vec::new(), Vec::new());
+    /// The closed bodies of groups of nodes, and the nodes of all other groups.
+    fn bodies(self, groups: Vec<Copies>) -> Result<(Vec<Placed>, Vec<PlacedMesh>), MeshError> {
+        let (mut closed, mut open) = (Vec::new(), Vec::new());
         for copies in groups {
             let mut body = MeshBuilder::default();
             let to_scene = if copies.is_mirrored { mirror() } else { DAffine3::IDENTITY };
             self.add(&mut body, &[PlacedMesh { to_scene, ..copies.nodes[0] }])?;
             let body = body.finish()?;
             if is_closed(&body) {
-                shared.push((copied(&copies, body)?, copies.nodes));
+                closed.push((copied(&copies, body)?, copies.nodes));
             } else {
-                joined.extend(copies.nodes);
+                open.extend(copies.nodes);
             }
         }
-        let boxes: Vec<Aabb> = shared.iter().flat_map(|(copied, _)| copied.boxes()).collect();
-        let mut touches = touching(&boxes, vertices).into_iter();
-        for (copied, nodes) in &mut shared {
-            let placed = std::mem::take(&mut copied.places).into_iter().zip(nodes.iter());
-            for ((place, node), touches) in placed.zip(&mut touches) {
-                if touches {
-                    joined.push(*node);
-                } else {
-                    copied.places.push(place);
-                }
-            }
-        }
-        let bodies = shared.into_iter().map(|(copied, _)| copied);
-        Ok((bodies.filter(|copied| !copied.places.is_empty()).collect(), joined))
+        Ok((closed, open))
     }
+}
+
+/// A body, and the node of each of its copies.
+type Placed = (CopiedBody, Vec<PlacedMesh>);
+
+/// The bodies with the copies that touch nothing else, and the nodes of the others.
+fn apart(closed: Vec<Placed>, vertices: &[DVec3]) -> (Vec<CopiedBody>, Vec<PlacedMesh>) {
+    let boxes: Vec<Aabb> = closed.iter().flat_map(|(copied, _)| copied.boxes()).collect();
+    let mut touches = touching(&boxes, vertices).into_iter();
+    let (mut shared, mut near) = (Vec::new(), Vec::new());
+    for (CopiedBody { body, places }, nodes) in closed {
+        let mut alone = Vec::new();
+        for ((place, node), touches) in places.into_iter().zip(nodes).zip(&mut touches) {
+            if touches { near.push(node) } else { alone.push(place) }
+        }
+        if !alone.is_empty() {
+            shared.push(CopiedBody { body, places: alone });
+        }
+    }
+    (shared, near)
 }
 
 fn open_glb(bytes: &[u8]) -> Result<gltf::Glb<'_>, MeshError> {
@@ -117,6 +125,14 @@ fn open_glb(bytes: &[u8]) -> Result<gltf::Glb<'_>, MeshError> {
 
 /// Required extensions that affect only appearance are harmless; others may hide geometry.
 fn refuse_unknown_extensions(root: &Root) -> Result<(), MeshError> {
+    if root.extensions_used.iter().any(|name| name == INSTANCING) {
+        return Err(MeshError::Unsupported {
+            what: format!(
+                "the glTF file uses {INSTANCING}, without which one copy of many would remain"
+            ),
+            remedy: "export a node for each copy",
+        });
+    }
     let harmless = |name: &str| name.starts_with("KHR_materials_") || name.contains("_texture_");
     match root.extensions_required.iter().find(|name| !harmless(name)) {
         Some(name) => Err(MeshError::Unsupported {
@@ -210,7 +226,10 @@ mod tests {
     #[test]
     fn bad_documents_are_told_what_is_wrong() {
         type Change = fn(&mut Value);
-        let cases: [(&str, Change); 16] = [
+        let cases: [(&str, Change); 17] = [
+            ("export a node for each copy", |j| {
+                j["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+            }),
             ("accessor 77", |j| {
                 j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(77);
             }),

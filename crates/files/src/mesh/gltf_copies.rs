@@ -14,7 +14,8 @@ use gltf::json::mesh::{Mesh, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use lumiduct_base::math::Aabb;
 use lumiduct_base::mesh::{
-    CopiedBody, MAX_COORDINATE_MM, MAX_SHOWN_TRIANGLES, TRIANGLE_BYTES, TriangleMesh,
+    CopiedBody, MAX_COORDINATE_MM, MAX_SHOWN_TRIANGLES, MAX_TRIANGLES, TRIANGLE_BYTES,
+    TriangleMesh, UnusableMesh,
 };
 use std::collections::{BTreeMap, HashMap};
 
@@ -22,8 +23,10 @@ use std::collections::{BTreeMap, HashMap};
 const LEAST_SHARED: u64 = 50_000;
 /// Lengths and angles of a place may be off by this, 1: rounding of a matrix in f32.
 const UNDISTORTED: f64 = 1e-5;
-/// Numbers of a transform up to this are taken, mm or 1.
+/// Largest magnitude accepted in a transform, mm or 1.
 const HUGE: f64 = 1e15;
+/// A copy smaller than this share of the largest copy of its mesh is joined, 1: one tree serves all.
+const LEAST_SCALE: f64 = 1e-3;
 /// Most pairs of boxes that are compared; copies that are still open then are joined.
 const MOST_COMPARED: usize = 200_000_000;
 
@@ -87,10 +90,7 @@ pub(crate) fn refuse_impossible_copies(
 }
 
 /// Refuses nodes whose copies of meshes take more than [`MAX_COPIES_BYTES`], before any is made.
-pub(crate) fn refuse_large_copies<'p>(
-    placed: impl Iterator<Item = &'p PlacedMesh>,
-    counts: &[u64],
-) -> Result<(), MeshError> {
+pub(crate) fn refuse_large_copies(placed: &[PlacedMesh], counts: &[u64]) -> Result<(), MeshError> {
     let [_, bytes_of_triangle] = TRIANGLE_BYTES;
     let mut is_known = vec![false; counts.len()];
     let (mut nodes, mut triangles, mut bytes) = (0, 0_u64, 0_u64);
@@ -107,6 +107,20 @@ pub(crate) fn refuse_large_copies<'p>(
     Ok(())
 }
 
+/// Refuses more triangles than a mesh may have, those of a group of copies counted once.
+pub(crate) fn refuse_large_meshes(
+    groups: &[Copies],
+    others: &[PlacedMesh],
+    counts: &[u64],
+) -> Result<(), MeshError> {
+    let first = groups.iter().filter_map(|copies| copies.nodes.first());
+    let stored = first.chain(others).map(|own| counts[own.mesh.value()]);
+    if stored.fold(0, u64::saturating_add) > MAX_TRIANGLES as u64 {
+        return Err(UnusableMesh::TooManyTriangles.into());
+    }
+    Ok(())
+}
+
 /// Nodes that may share a mesh, and all others.
 pub(crate) fn grouped(placed: Vec<PlacedMesh>, counts: &[u64]) -> (Vec<Copies>, Vec<PlacedMesh>) {
     let (similar, mut others): (Vec<_>, Vec<_>) =
@@ -118,6 +132,11 @@ pub(crate) fn grouped(placed: Vec<PlacedMesh>, counts: &[u64]) -> (Vec<Copies>, 
     }
     let mut shared = Vec::new();
     for ((mesh, is_mirrored), nodes) in groups {
+        let scale = |own: &PlacedMesh| own.to_scene.matrix3.determinant().abs().cbrt();
+        let least = LEAST_SCALE * nodes.iter().map(scale).fold(0.0, f64::max);
+        let (nodes, tiny): (Vec<_>, Vec<_>) =
+            nodes.into_iter().partition(|own| scale(own) >= least);
+        others.extend(tiny);
         let more = nodes.len() as u64 - 1;
         if more.saturating_mul(counts[mesh]) < LEAST_SHARED {
             others.extend(nodes);
@@ -133,7 +152,7 @@ fn is_undistorted(matrix: DMat3) -> bool {
     let square = matrix.determinant().abs().cbrt().powi(2);
     let products = matrix.transpose() * matrix;
     let off = (products - DMat3::from_diagonal(DVec3::splat(square))).to_cols_array();
-    off.iter().all(|own| own.abs() <= UNDISTORTED * square)
+    square.is_normal() && off.iter().all(|own| own.abs() <= UNDISTORTED * square)
 }
 
 /// The mirror image in x.
@@ -234,11 +253,13 @@ mod tests {
     #[test]
     fn copies_that_touch_are_joined_vertex_by_vertex() {
         let mut nodes = row(MANY, 5.0);
+        // Far from all others, and far too small for their tree.
+        nodes.push(json!({ "mesh": 0, "translation": [0, 90, 0], "scale": [1e-4, 1e-4, 1e-4] }));
         // End to end with the first, and one whose end is within the second.
         nodes.push(json!({ "mesh": 0, "translation": [0, 0, 40] }));
         nodes.push(json!({ "mesh": 0, "translation": [5, 0, 10] }));
         let assembly = rods(nodes).unwrap();
-        assert_eq!(assembly.mesh.triangles.len(), 4 * 96);
+        assert_eq!(assembly.mesh.triangles.len(), 5 * 96);
         assert_eq!(assembly.copied[0].places.len(), MANY - 2);
         assert!(assembly.health().crowded_edges.count > 0, "ends that are joined face each other");
     }
@@ -297,6 +318,13 @@ mod tests {
             to_scene: DAffine3::from_translation(DVec3::X * node as f64),
         };
         let placed: Vec<PlacedMesh> = (0..1000).map(place).collect();
+        // Half a million triangles each, shared or not.
+        let large = [MAX_TRIANGLES as u64 / 100 + 1];
+        let group =
+            |node| Copies { is_mirrored: false, nodes: vec![place(node), place(node + 100)] };
+        let groups: Vec<Copies> = (0..60).map(group).collect();
+        assert!(refuse_large_meshes(&groups, &placed[..40], &large).is_err());
+        assert!(refuse_large_meshes(&groups, &placed[..39], &large).is_ok());
         let error =
             refuse_impossible_copies(&placed, &[MAX_SHOWN_TRIANGLES / 1000 + 1]).unwrap_err();
         assert!(matches!(error, MeshError::TooManyShown { nodes: 1000, .. }), "{error}");

@@ -139,6 +139,6 @@ impl Context<'_> {
 pub(super) fn patch_range(extent: &PieceRange) -> std::ops::Range<usize> {
     match extent {
         PieceRange::Patches(range) => range.clone(),
-        PieceRange::Ports(_) | PieceRange::Mesh { .. } => 0..0,
+        PieceRange::Ports(_) | PieceRange::Mesh(_) => 0..0,
     }
 }

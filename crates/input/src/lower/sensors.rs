@@ -177,7 +177,7 @@ impl Context<'_> {
                     "use `cells = [nx, ny]` on a face that is flat or swept",
                 ),
                 Division::Cells(_) => (
-                    "a curved face of a mesh cannot be unrolled into cells",
+                    "a face of a mesh that is curved, or part of several copies, cannot be unrolled into cells",
                     "use `plane = {}`, one cell over the whole face, or place a `plane` with cells before \
                         it with `at`",
                 ),

@@ -8,7 +8,6 @@
 //! A tetrahedron in centimetres, read as a closed mesh in millimetres:
 //!
 //! ```
-//! use lumiduct_base::mesh::health;
 //! use lumiduct_files::mesh::{LengthUnit, read};
 //!
 //! let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n\
@@ -18,8 +17,8 @@
 //! std::fs::write(&path, obj)?;
 //!
 //! let mesh = read(&path, LengthUnit::Centimetre)?;
-//! assert!(health(&mesh).is_sound());
-//! assert_eq!(mesh.faces, ["wall", "exit"]);
+//! assert!(mesh.health().is_sound());
+//! assert!(mesh.faces().keys().eq(&["wall", "exit"]));
 //! assert_eq!(mesh.bounds().max.to_array(), [10.0, 10.0, 10.0]); // mm
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -23,6 +23,7 @@ mod light_groups;
 mod luminaire_exports;
 mod luminaires;
 mod media;
+mod mesh_parts;
 mod meshes;
 pub(crate) mod names;
 pub(crate) mod patterns;
@@ -104,6 +105,7 @@ pub(crate) fn lower(
     starts::check_starts(spec, &scene, problems);
     consistency::check_overlaps(spec, &scene, problems);
     consistency::check_open_faces(spec, &scene, problems);
+    mesh_parts::check_parts(spec, &scene, problems);
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
     luminaire_exports::note_distances(&scene, &exports, problems);

@@ -109,21 +109,21 @@ fn by_scene(scene: &Scene, query: &Query) -> f64 {
 
 fn by_all_triangles(mesh: &Mesh, query: &Query) -> f64 {
     let line = TriangleLine::of(&query.path.ray);
-    (0..mesh.triangle_count())
+    mesh.triangles()
         .map(|triangle| distance(mesh, triangle, &line, query))
         .fold(f64::INFINITY, f64::min)
 }
 
-fn by_bare_tree(tree: &Bvh2, mesh: &Mesh, query: &Query) -> f64 {
+fn by_bare_tree(tree: &BareTree, mesh: &Mesh, query: &Query) -> f64 {
     let ray: &Ray = &query.path.ray;
     let line = TriangleLine::of(ray);
     let ray = Ray32::new_inf(ray.origin().as_vec3a(), ray.dir().as_vec3a());
     let mut nearest = f64::INFINITY;
     let mut hit = RayHit::none();
-    fast_stack!(u32, (96, 192), tree.max_depth, stack, {
-        tree.ray_traverse_dynamic(&mut stack, ray, &mut hit, |node, ray, _| {
+    fast_stack!(u32, (96, 192), tree.tree.max_depth, stack, {
+        tree.tree.ray_traverse_dynamic(&mut stack, ray, &mut hit, |node, ray, _| {
             for slot in node.first_index..node.first_index + node.prim_count {
-                let triangle = tree.primitive_indices[slot as usize] as usize;
+                let triangle = tree.numbers[tree.tree.primitive_indices[slot as usize] as usize];
                 nearest = nearest.min(distance(mesh, triangle, &line, query));
                 ray.tmax = ray.tmax.min((nearest as f32).next_up());
             }
@@ -146,19 +146,29 @@ fn distance(mesh: &Mesh, triangle: usize, line: &TriangleLine, query: &Query) ->
     }
 }
 
-fn bare_tree(mesh: &Mesh) -> Bvh2 {
-    let boxes: Vec<Aabb> = (0..mesh.triangle_count())
+/// A tree of obvhs alone.
+struct BareTree {
+    tree: Bvh2,
+    /// The number of each triangle in the mesh.
+    numbers: Vec<usize>,
+}
+
+fn bare_tree(mesh: &Mesh) -> BareTree {
+    let numbers: Vec<usize> = mesh.triangles().collect();
+    let boxes: Vec<Aabb> = numbers
+        .iter()
         .map(|triangle| {
             // Room for the rounding of rays to f32, as for every user of such a tree.
-            let bounds = mesh.bounds(triangle).grown(1e-4);
+            let bounds = mesh.bounds(*triangle).grown(1e-4);
             Aabb::new(bounds.min.as_vec3a(), bounds.max.as_vec3a())
         })
         .collect();
-    build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default())
+    let tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+    BareTree { tree, numbers }
 }
 
 /// All searches must agree: speed of a wrong answer means nothing.
-fn check(scene: &Scene, mesh: &Mesh, tree: &Bvh2, queries: &[Query], few: &[Query]) {
+fn check(scene: &Scene, mesh: &Mesh, tree: &BareTree, queries: &[Query], few: &[Query]) {
     let same = |a: f64, b: f64| a == b || (a - b).abs() < 1e-9;
     for query in queries {
         let (ours, bare) = (by_scene(scene, query), by_bare_tree(tree, mesh, query));

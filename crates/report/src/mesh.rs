@@ -11,12 +11,12 @@ const DRIFT_BOUNCES: [f64; 3] = [10.0, 100.0, 1000.0];
 /// Triangles, and the time of a path over that in an exact sweep, 1: the first four measured with the bent rod of docs/cad.md, the last two from
 /// the time to the next triangle of larger rods (docs/speed.md).
 const MEASURED_TIMES: [[f64; 2]; 6] = [
-    [656.0, 2.3],
-    [2156.0, 2.7],
-    [6266.0, 3.0],
-    [20_136.0, 3.6],
-    [100_800.0, 6.0],
-    [979_600.0, 12.0],
+    [656.0, 1.7],
+    [2156.0, 1.9],
+    [6266.0, 2.1],
+    [20_136.0, 2.4],
+    [100_800.0, 3.4],
+    [979_600.0, 5.8],
 ];
 
 /// The report on a mesh, lengths in mm.

@@ -10,7 +10,7 @@ use indexmap::IndexMap;
 pub const MAX_SHOWN_TRIANGLES: u64 = 1_000_000_000;
 
 /// Memory of a triangle without and with normals while its scene is built, bytes: measured (docs/cad.md).
-pub const TRIANGLE_BYTES: [u64; 2] = [160, 200];
+pub const TRIANGLE_BYTES: [u64; 2] = [160, 240];
 /// The same of a copy.
 const COPY_BYTES: u64 = 500;
 
@@ -67,16 +67,17 @@ impl MeshAssembly {
 
     /// Number of triangles, those of copied bodies at each of their places.
     pub fn triangle_count(&self) -> u64 {
-        let copied = self.copied.iter();
-        let copied = copied.map(|own| own.body.triangles.len() as u64 * own.places.len() as u64);
-        self.mesh.triangles.len() as u64 + copied.sum::<u64>()
+        self.count(|mesh| mesh.triangles.len())
     }
 
     /// Number of vertices, those of copied bodies at each of their places.
     pub fn vertex_count(&self) -> u64 {
-        let copied = self.copied.iter();
-        let copied = copied.map(|own| own.body.positions.len() as u64 * own.places.len() as u64);
-        self.mesh.positions.len() as u64 + copied.sum::<u64>()
+        self.count(|mesh| mesh.positions.len())
+    }
+
+    fn count(&self, of: impl Fn(&TriangleMesh) -> usize) -> u64 {
+        let copied = self.copied.iter().map(|own| of(&own.body) as u64 * own.places.len() as u64);
+        of(&self.mesh) as u64 + copied.sum::<u64>()
     }
 
     /// The smallest box around all vertices, mm.

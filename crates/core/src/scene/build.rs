@@ -10,7 +10,7 @@ use crate::scene::relief::{PatchCut, Relief, ReliefWall, Trim};
 use crate::scene::{
     Accel, COINCIDENCE, Face, FaceId, FacePiece, FinishId, LightGroups, MediumId, MeshPieces,
     NamedFinish, Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid,
-    SolidId, Source, SourceId, SourceSpectra, Surface,
+    SolidId, Source, SourceId, SourceSpectra,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -150,7 +150,7 @@ impl Builder {
             .map(|(face, (name, finishes))| self.mesh_face(name, owner, *finishes, own(face)))
             .collect();
         // The number of the first triangle is known once all patches are added.
-        let body = MeshBody::new(mesh, owner, faces.clone());
+        let body = MeshBody::new(mesh, solid, faces.clone());
         self.grow(owner, body.bounds());
         self.scene.meshes.push(body);
         faces
@@ -190,7 +190,7 @@ impl Builder {
                 }
             }
         }
-        let copies: Vec<MeshBody> = MeshBody::copies(mesh, places, owner, faces.clone()).collect();
+        let copies: Vec<MeshBody> = MeshBody::copies(mesh, places, solid, faces.clone()).collect();
         self.grow(owner, copies.iter().map(MeshBody::bounds).fold(Aabb::EMPTY, Aabb::union));
         self.scene.copies.extend(copies);
         faces
@@ -295,27 +295,20 @@ impl Builder {
         let mut surfaces = patches;
         for body in scene.meshes.iter_mut().chain(&mut scene.copies) {
             body.first = surfaces;
-            surfaces += body.triangle_count();
+            surfaces += body.number_limit();
         }
         scene.first_of_copies = scene.copies.first().map_or(surfaces, |copy| copy.first);
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.spectra = SourceSpectra::new(&scene.sources);
         let reach = scene.bounds.largest_coordinate();
-        scene
-            .copies
-            .chunk_by_mut(|one, other| one.shares_triangles(other))
-            .for_each(|copies| MeshBody::build_tree(copies, reach));
-        // In the tree copies follow all other surfaces, each as one.
-        let bounds =
-            |index: usize| match scene.copies.get(index.wrapping_sub(scene.first_of_copies)) {
-                Some(copy) => copy.bounds(),
-                None => match scene.surface(PrimId::new(index)) {
-                    Surface::Patch(patch) => patch.shape.bounds(),
-                    Surface::Triangle(body, triangle) => body.triangle_bounds(triangle),
-                },
-            };
-        let others = scene.first_of_copies - patches + scene.copies.len();
-        scene.accel = Accel::new([patches, others], bounds, reach);
+        for body in scene.meshes.iter_mut().chain(&mut scene.copies) {
+            body.set_reach(reach);
+        }
+        let bounds = |index: usize| match scene.patches.get(index) {
+            Some(patch) => patch.shape.bounds(),
+            None => scene.mesh_body(index - patches).bounds(),
+        };
+        scene.accel = Accel::new([patches, scene.mesh_bodies().count()], bounds, reach);
         if let Accel::Scan(_) = scene.accel {
             let solids = (0..scene.solids.len()).map(SolidId::new);
             let room = ConvexSolids {

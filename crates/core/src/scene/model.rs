@@ -102,6 +102,12 @@ impl Scene {
         self.meshes.iter().chain(&self.copies)
     }
 
+    /// One of [`Self::mesh_bodies`].
+    #[inline(always)]
+    pub(super) fn mesh_body(&self, index: usize) -> &MeshBody {
+        self.meshes.get(index).unwrap_or_else(|| &self.copies[index - self.meshes.len()])
+    }
+
     /// Whether the boxes around all that light starts on or meets lie within a sphere, mm.
     pub fn lies_within(&self, middle: DVec3, radius: f64) -> bool {
         let patches = self.patches.iter().map(|patch| patch.shape.bounds());

@@ -32,7 +32,7 @@ const MOST_COMPARED: usize = 200_000_000;
 
 /// Nodes that share the triangles of a mesh.
 pub(crate) struct Copies {
-    /// Whether they show its mirror image in x, of which `nodes` have the places.
+    /// Whether these nodes show the mirror image of the mesh in x.
     pub(crate) is_mirrored: bool,
     pub(crate) nodes: Vec<PlacedMesh>,
 }

@@ -1,6 +1,7 @@
 //! The solids that a path is in.
 
 use crate::scene::SolidId;
+use crate::scene::shape::Toward;
 use smallvec::SmallVec;
 
 /// The set of solids that a point lies in: a bit for each of the first 64, a list for the others.
@@ -30,6 +31,12 @@ impl Inside {
             Some(bit) => self.first & bit != 0,
             None => self.others.contains(&solid),
         }
+    }
+
+    /// How a path may cross the surface of `solid` next: within it only out of it.
+    #[inline]
+    pub(crate) fn toward(&self, solid: SolidId) -> Toward {
+        if self.contains(solid) { Toward::Front } else { Toward::Back }
     }
 
     /// Whether the point lies in no solid, except perhaps `solid`.

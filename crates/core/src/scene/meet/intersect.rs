@@ -8,11 +8,12 @@
 
 use crate::scene::crossing::accel::Accel;
 use crate::scene::crossing::hit::{Hits, Nearest, PrimHit, StartSide};
-use crate::scene::crossing::tree::Tree;
-use crate::scene::mesh::{MeshBody, TriangleLine};
+use crate::scene::crossing::tree::SurfaceTree;
+use crate::scene::mesh::MeshBody;
 use crate::scene::shape::{Crossing, CrossingQuery, RayStart, Toward};
-use crate::scene::{Inside, Owner, PrimId, Ray, Scene, StartSurfaces, Surface};
+use crate::scene::{Inside, Owner, PrimId, Ray, Scene, StartSurfaces};
 use smallvec::SmallVec;
+use std::iter;
 
 impl Scene {
     /// The next hit of a ray that starts on the surfaces `from`, inside the solids `inside`.
@@ -85,54 +86,64 @@ impl Scene {
     #[inline(never)]
     fn nearest_in_tree(
         &self,
-        tree: &Tree,
+        tree: &SurfaceTree,
         ray: &Ray,
         from: &StartSurfaces,
         inside: &Inside,
     ) -> Nearest {
-        let line = self.line(ray);
         let mut nearest = Nearest::NONE;
-        tree.visit(ray, f64::INFINITY, |index| {
-            if let Some(copy) = self.copy_at(index) {
-                // Passed by value, so that it stays in registers.
-                nearest = self.nearest_in_copy(copy, ray, from, inside, nearest);
+        tree.visit(ray, |index| {
+            if index < self.patches.len() {
+                self.scan(iter::once(PrimId::new(index)), ray, from, inside, &mut nearest);
             } else {
-                let prim = PrimId::new(index);
-                let met = Met { surface: self.surface(prim), line: line.as_ref() };
-                let limit = nearest.crossing.t + self.tolerance;
-                if let Some(crossing) = self.crossing(prim, met, ray, from, (inside, limit)) {
-                    nearest.consider(prim, crossing);
-                }
+                let body = self.mesh_body(index - self.patches.len());
+                // Passed by value, so that it stays in registers.
+                nearest = self.nearest_in_body(body, ray, from, inside, nearest);
             }
             nearest.crossing.t + self.tolerance
         });
         nearest
     }
 
-    /// The nearest surface so far, or a nearer triangle of a copy.
+    /// The nearest surface so far, or a nearer triangle.
     #[inline(never)]
-    fn nearest_in_copy(
+    fn nearest_in_body(
         &self,
-        copy: &MeshBody,
+        body: &MeshBody,
         ray: &Ray,
         from: &StartSurfaces,
         inside: &Inside,
         mut nearest: Nearest,
     ) -> Nearest {
-        copy.visit_copy(ray, nearest.crossing.t + self.tolerance, |prim, met| {
-            let limit = nearest.crossing.t + self.tolerance;
-            if let Some(crossing) = self.crossing(prim, met, ray, from, (inside, limit)) {
-                nearest.consider(prim, crossing);
-            }
+        let limit = nearest.crossing.t + self.tolerance;
+        self.visit_body(body, ray, (from, inside), limit, |prim, crossing| {
+            nearest.consider(prim, crossing);
             nearest.crossing.t + self.tolerance
         });
         nearest
     }
 
-    /// The copy of a mesh with this number in the tree, after all surfaces that are not copied.
+    /// Calls `visit` with the crossings with triangles of a body that count, up to `limit` and the smallest distance that `visit` has
+    /// returned, mm.
     #[inline(always)]
-    fn copy_at(&self, index: usize) -> Option<&MeshBody> {
-        self.copies.get(index.wrapping_sub(self.first_of_copies))
+    fn visit_body(
+        &self,
+        body: &MeshBody,
+        ray: &Ray,
+        (from, inside): (&StartSurfaces, &Inside),
+        limit: f64,
+        mut visit: impl FnMut(PrimId, Crossing) -> f64,
+    ) {
+        let toward = inside.toward(body.solid);
+        let mut limit = limit;
+        body.visit_crossings(ray, toward, limit, |triangle, crossing| {
+            let prim = PrimId::new(body.first + triangle);
+            let counts = (-self.tolerance..=limit).contains(&crossing.t) && !from.contains(prim);
+            if counts {
+                limit = visit(prim, crossing);
+            }
+            limit
+        });
     }
 
     /// The other surfaces at the nearest hit.
@@ -146,64 +157,34 @@ impl Scene {
     ) -> Box<[PrimHit]> {
         let limit = nearest.crossing.t + self.tolerance;
         let mut others = Vec::new();
-        self.visit(ray, limit, |prim, met| {
+        let mut add = |prim: PrimId, crossing: Crossing| {
             if prim != nearest.prim {
-                let crossing = self.crossing(prim, met, ray, from, (inside, limit));
-                others.extend(crossing.map(|crossing| self.hit(prim, crossing.toward)));
+                others.push(self.hit(prim, crossing.toward));
             }
-        });
-        others.sort_unstable_by_key(|hit: &PrimHit| hit.prim);
-        others.into()
-    }
-
-    /// Calls `visit` with every surface whose box the ray meets before `limit`, mm; a scan visits all.
-    fn visit(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(PrimId, Met<'_>)) {
-        let line = self.line(ray);
+            limit
+        };
         self.accel.visit(ray, |index| {
-            if let Some(copy) = self.copy_at(index) {
-                copy.visit_copy(ray, limit, |prim, met| {
-                    visit(prim, met);
-                    limit
-                });
-            } else {
+            let Some(patch) = self.patches.get(index) else {
+                let body = self.mesh_body(index - self.patches.len());
+                self.visit_body(body, ray, (from, inside), limit, &mut add);
+                return limit;
+            };
+            if let Some(wanted) = self.wanted(patch.owner, inside, limit) {
                 let prim = PrimId::new(index);
-                visit(prim, Met { surface: self.surface(prim), line: line.as_ref() });
+                let crossing = patch.first_crossing(ray, start_on(prim, from), &wanted);
+                crossing.map(|crossing| add(prim, crossing));
             }
             limit
         });
-    }
-
-    /// The first crossing of a ray with a surface that counts, up to a distance.
-    #[inline(always)]
-    fn crossing(
-        &self,
-        prim: PrimId,
-        met: Met<'_>,
-        ray: &Ray,
-        from: &StartSurfaces,
-        (inside, limit): (&Inside, f64),
-    ) -> Option<Crossing> {
-        match met.surface {
-            Surface::Patch(patch) => {
-                let wanted = self.wanted(patch.owner, inside, limit)?;
-                patch.first_crossing(ray, start_on(prim, from), &wanted)
-            }
-            Surface::Triangle(body, triangle) => {
-                // Most triangles are missed; whether a crossing counts is checked only for the
-                // others.
-                let crossing = body.mesh.crossing_of(triangle, met.line?)?;
-                let wanted = self.wanted(body.owner, inside, limit)?;
-                (wanted.includes(&crossing) && !from.contains(prim)).then_some(crossing)
-            }
-        }
+        others.sort_unstable_by_key(|hit: &PrimHit| hit.prim);
+        others.into()
     }
 
     /// The crossings that count: for a solid, those of the right orientation.
     #[inline(always)]
     fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<CrossingQuery> {
         let (toward, min) = match owner {
-            Owner::Solid(solid) if inside.contains(solid) => (Some(Toward::Front), -self.tolerance),
-            Owner::Solid(_) => (Some(Toward::Back), -self.tolerance),
+            Owner::Solid(solid) => (Some(inside.toward(solid)), -self.tolerance),
             Owner::Sheet => (None, 0.0f64.next_up()),
             Owner::Port => return None,
         };
@@ -226,15 +207,13 @@ impl Scene {
             StartSide::Ahead => self.tolerance,
             StartSide::Behind => -self.tolerance,
         };
-        self.visit(ray, f64::INFINITY, |_, Met { surface, line }| {
-            surface.crossings(ray, line, RayStart::Elsewhere, |crossing| {
-                if let Owner::Solid(solid) = surface.owner() {
-                    let slot = &mut nearest[solid.index()];
-                    if crossing.t > beyond && crossing.t < slot.0 {
-                        *slot = (crossing.t, crossing.toward);
-                    }
+        self.all_crossings(ray, |prim, crossing| {
+            if let Owner::Solid(solid) = self.surface(prim).owner() {
+                let slot = &mut nearest[solid.index()];
+                if crossing.t > beyond && crossing.t < slot.0 {
+                    *slot = (crossing.t, crossing.toward);
                 }
-            });
+            }
         });
         nearest
             .iter()
@@ -246,34 +225,21 @@ impl Scene {
 
     /// Every crossing ahead of a ray with the surfaces of solids and sheets, in any order.
     pub fn all_crossings(&self, ray: &Ray, mut visit: impl FnMut(PrimId, Crossing)) {
-        self.visit(ray, f64::INFINITY, |prim, Met { surface, line }| {
-            surface.crossings(ray, line, RayStart::Elsewhere, |crossing| visit(prim, crossing));
-        });
-    }
-
-    /// The form of a ray for triangle tests, made once; none without meshes.
-    #[inline]
-    fn line(&self, ray: &Ray) -> Option<TriangleLine> {
-        (!self.meshes.is_empty()).then(|| TriangleLine::of(ray))
-    }
-}
-
-/// A surface that a ray may cross.
-#[derive(Clone, Copy)]
-struct Met<'s> {
-    surface: Surface<'s>,
-    /// The line of the ray in the coordinates of a triangle; none without triangles.
-    line: Option<&'s TriangleLine>,
-}
-
-impl MeshBody {
-    /// Calls `visit` with every triangle of a copy whose box the ray meets before `limit`, mm, and the smallest distance that
-    /// `visit` has returned.
-    #[inline(always)]
-    fn visit_copy(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(PrimId, Met<'_>) -> f64) {
-        self.visit_triangles(ray, limit, |triangle, line| {
-            let surface = Surface::Triangle(self, triangle);
-            visit(PrimId::new(self.first + triangle), Met { surface, line: Some(line) })
+        self.accel.visit(ray, |index| {
+            if let Some(patch) = self.patches.get(index) {
+                patch.crossings(ray, RayStart::Elsewhere, |crossing| {
+                    visit(PrimId::new(index), crossing);
+                });
+                return f64::INFINITY;
+            }
+            let body = self.mesh_body(index - self.patches.len());
+            for toward in [Toward::Front, Toward::Back] {
+                body.visit_crossings(ray, toward, f64::INFINITY, |triangle, crossing| {
+                    visit(PrimId::new(body.first + triangle), crossing);
+                    f64::INFINITY
+                });
+            }
+            f64::INFINITY
         });
     }
 }

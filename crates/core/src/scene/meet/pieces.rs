@@ -1,8 +1,7 @@
 //! Queries on surfaces, whether they are analytic patches or triangles of a mesh.
 
-use crate::scene::Ray;
-use crate::scene::mesh::{MeshBody, TriangleLine};
-use crate::scene::shape::{ChartRect, Crossing, RayStart, Region, Shape};
+use crate::scene::mesh::MeshBody;
+use crate::scene::shape::{ChartRect, Region, Shape};
 use crate::scene::{FaceId, MeshPieces, Owner, Patch, PieceRange, PrimId, Scene, SmoothId};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
@@ -31,39 +30,7 @@ impl Surface<'_> {
     pub fn owner(self) -> Owner {
         match self {
             Self::Patch(patch) => patch.owner,
-            Self::Triangle(body, _) => body.owner,
-        }
-    }
-
-    /// Every crossing of a ray's line; `line` is the line of the ray if there are triangles.
-    pub(crate) fn crossings(
-        self,
-        ray: &Ray,
-        line: Option<&TriangleLine>,
-        start: RayStart,
-        visit: impl FnMut(Crossing),
-    ) {
-        match self {
-            Self::Patch(patch) => patch.crossings(ray, start, visit),
-            Self::Triangle(body, triangle) => {
-                body.crossing(triangle, line, start).into_iter().for_each(visit);
-            }
-        }
-    }
-}
-
-impl MeshBody {
-    /// Where a line crosses a triangle; never the one that it starts on.
-    #[inline]
-    fn crossing(
-        &self,
-        triangle: usize,
-        line: Option<&TriangleLine>,
-        start: RayStart,
-    ) -> Option<Crossing> {
-        match start {
-            RayStart::On => None,
-            RayStart::Elsewhere => self.mesh.crossing_of(triangle, line?),
+            Self::Triangle(body, _) => Owner::Solid(body.solid),
         }
     }
 }
@@ -76,8 +43,7 @@ impl Scene {
         match self.patches.get(index) {
             Some(patch) => Surface::Patch(patch),
             None => {
-                let is_copied = index >= self.first_of_copies;
-                let bodies = if is_copied { &self.copies } else { &self.meshes };
+                let bodies = if self.is_copied(prim) { &self.copies } else { &self.meshes };
                 let body = match bodies.as_slice() {
                     [body] => body,
                     bodies => &bodies[bodies.partition_point(|body| body.first <= index) - 1],
@@ -214,7 +180,7 @@ impl Scene {
 
     /// Whether a surface is a triangle of a copy of a mesh.
     pub(crate) fn is_copied(&self, prim: PrimId) -> bool {
-        prim.index() >= self.first_of_copies && !self.copies.is_empty()
+        prim.index() >= self.first_of_copies
     }
 
     /// The bodies of triangles that a face is part of, with its number in each.

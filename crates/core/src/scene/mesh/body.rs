@@ -3,9 +3,10 @@
 //! A ray is taken to the coordinates of a copy, where all triangles see the same line, so that copies have no gaps between
 //! neighbours either. Distances along it are multiplied by the scale.
 
-use crate::scene::crossing::tree::Tree;
+use crate::scene::crossing::tree::padding;
 use crate::scene::mesh::{Mesh, MeshPoint, TriangleLine};
-use crate::scene::{FaceId, Owner, Ray};
+use crate::scene::shape::{Crossing, Toward};
+use crate::scene::{FaceId, Ray, SolidId};
 use glam::{DAffine3, DMat3, DVec3};
 use lumiduct_base::math::{Aabb, Frame};
 use std::sync::Arc;
@@ -51,10 +52,10 @@ pub struct MeshBody {
     bounds: Aabb,
     /// The place of a copy; `None` for a mesh in the coordinates of the scene.
     place: Option<Box<MeshPlace>>,
-    /// The tree over the triangles of a copy; those of all other meshes are in the tree of the scene.
-    tree: Option<Arc<Tree>>,
-    /// The owner of its faces.
-    pub owner: Owner,
+    /// By how much the boxes of its tree must grow for rounding; known when the scene is built.
+    padding: f32,
+    /// The solid that it is part of.
+    pub solid: SolidId,
     /// The scene's face of each face of the mesh.
     pub faces: Arc<[FaceId]>,
     /// The plane of each flat face that has no copies.
@@ -65,18 +66,18 @@ pub struct MeshBody {
 
 impl MeshBody {
     /// A mesh in the coordinates of the scene.
-    pub(crate) fn new(mesh: Mesh, owner: Owner, faces: Vec<FaceId>) -> Self {
+    pub(crate) fn new(mesh: Mesh, solid: SolidId, faces: Vec<FaceId>) -> Self {
         let planes = (0..faces.len()).map(|face| mesh.chart_plane(face)).collect();
         let bounds = Aabb::of(mesh.positions.iter().copied());
         let (mesh, faces) = (Arc::new(mesh), faces.into());
-        Self { mesh, bounds, place: None, tree: None, owner, faces, planes, first: 0 }
+        Self { mesh, bounds, place: None, padding: 0.0, solid, faces, planes, first: 0 }
     }
 
     /// Copies of a mesh.
     pub(crate) fn copies(
         mesh: Mesh,
         places: Vec<MeshPlace>,
-        owner: Owner,
+        solid: SolidId,
         faces: Vec<FaceId>,
     ) -> impl Iterator<Item = Self> {
         let planes: Arc<[Option<Frame>]> = vec![None; faces.len()].into();
@@ -87,8 +88,8 @@ impl MeshBody {
                 mesh.positions.iter().map(|position| place.to_scene.transform_point3(*position)),
             ),
             place: Some(Box::new(place)),
-            tree: None,
-            owner,
+            padding: 0.0,
+            solid,
             faces: Arc::clone(&faces),
             planes: Arc::clone(&planes),
             first: 0,
@@ -102,35 +103,31 @@ impl MeshBody {
         self.planes = planes.into();
     }
 
-    /// Whether both are copies of one mesh.
-    pub(crate) fn shares_triangles(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.mesh, &other.mesh)
+    /// Tells it that rays start at coordinates up to `largest_coordinate`, mm, in the scene.
+    pub(crate) fn set_reach(&mut self, largest_coordinate: f64) {
+        let reach = self.place.as_ref().map(|place| place.reach(largest_coordinate));
+        self.padding = padding(reach.unwrap_or(largest_coordinate));
     }
 
-    /// Builds the tree of all copies of one mesh; rays start at coordinates up to `largest_coordinate`, mm, in the scene.
-    pub(crate) fn build_tree(copies: &mut [Self], largest_coordinate: f64) {
-        let Some(first) = copies.first() else { return };
-        let places = copies.iter().filter_map(|copy| copy.place.as_ref());
-        let reach = places.map(|place| place.reach(largest_coordinate)).fold(0.0, f64::max);
-        let mesh = &first.mesh;
-        let tree =
-            Arc::new(Tree::over(mesh.triangle_count(), |triangle| mesh.bounds(triangle), reach));
-        copies.iter_mut().for_each(|copy| copy.tree = Some(Arc::clone(&tree)));
-    }
-
-    /// Calls `visit` with every triangle of a copy whose box the ray meets, and with the ray's line, before `limit` and the
-    /// smallest distance that `visit` has returned, mm.
+    /// Calls `visit` with the crossings of a ray's line with triangles in this direction, and with their numbers, at least those before
+    /// `limit` and the smallest distance that `visit` has returned, mm.
     #[inline(always)]
-    pub(crate) fn visit_triangles(
+    pub(crate) fn visit_crossings(
         &self,
         ray: &Ray,
+        toward: Toward,
         limit: f64,
-        mut visit: impl FnMut(usize, &TriangleLine) -> f64,
+        mut visit: impl FnMut(usize, Crossing) -> f64,
     ) {
-        let (Some(tree), Some(place)) = (&self.tree, &self.place) else { return };
-        let (own, scale) = place.ray_from_scene(ray);
-        let line = TriangleLine::scaled(&own, scale);
-        tree.visit(&own, limit / scale, |triangle| visit(triangle, &line) / scale);
+        let (ray, scale) = match &self.place {
+            None => (*ray, 1.0),
+            Some(place) => place.ray_from_scene(ray),
+        };
+        let line = TriangleLine::scaled(&ray, scale);
+        let found = (&ray, &line, self.padding);
+        self.mesh.visit_crossings(found, toward, limit / scale, |triangle, crossing| {
+            visit(triangle, crossing) / scale
+        });
     }
 
     /// Whether it is a copy.
@@ -138,19 +135,19 @@ impl MeshBody {
         self.place.is_some()
     }
 
-    /// Number of triangles; they are numbered from 0.
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.mesh.triangle_count()
+    }
+
+    /// Triangles have numbers below this one, but some of these numbers have no triangle.
+    pub fn number_limit(&self) -> usize {
+        self.mesh.number_limit()
     }
 
     /// The three vertices of a triangle, mm.
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.mesh.corners(triangle).map(|corner| self.point_to_scene(corner))
-    }
-
-    /// A box around a triangle, mm.
-    pub(crate) fn triangle_bounds(&self, triangle: usize) -> Aabb {
-        Aabb::of(self.corners(triangle))
     }
 
     /// Box around it, mm.
@@ -302,7 +299,8 @@ mod tests {
             for index in 0..4000 {
                 let mut sampler = Sampler::for_path(51, 0, index);
                 let body = &single.meshes[index as usize % single.meshes.len()];
-                let [a, b, c] = body.corners(index as usize % body.triangle_count());
+                let triangles: Vec<usize> = body.mesh.triangles().collect();
+                let [a, b, c] = body.corners(triangles[index as usize % triangles.len()]);
                 // Every third aims at a vertex, every third at an edge.
                 let target = match index % 3 {
                     0 => a,
@@ -316,7 +314,13 @@ mod tests {
                 let touches = |(met, is_outside): &(Vec<(f64, DVec3, String)>, bool)| {
                     !is_outside || met.windows(2).any(|pair| pair[1].0 - pair[0].0 < 1e-3)
                 };
-                if touches(&ours) || touches(&wanted) {
+                let meets = |(met, _): &(Vec<(f64, DVec3, String)>, bool)| {
+                    met.iter().any(|(way, ..)| (way - 300.0).abs() < 1e-6)
+                };
+                if touches(&ours)
+                    || touches(&wanted)
+                    || index % 3 != 2 && meets(&ours) != meets(&wanted)
+                {
                     touching += 1;
                     continue;
                 }
@@ -370,10 +374,12 @@ mod tests {
         for (index, (copy, mesh)) in copied.copies.iter().zip(&single.meshes[1..]).enumerate() {
             // A distortion bends interpolated normals otherwise than those of the corners.
             let most = if index == 4 { 1e-5 } else { 1e-12 };
-            for triangle in (0..copy.triangle_count()).step_by(7) {
-                let [a, b, c] = mesh.corners(triangle);
+            let pairs = copy.mesh.triangles().zip(mesh.mesh.triangles());
+            for (triangle, same) in pairs.step_by(7) {
+                let [a, b, c] = mesh.corners(same);
                 let point = 0.2 * a + 0.3 * b + 0.5 * c;
-                let [ours, wanted] = [copy, mesh].map(|own| own.shading_normal(triangle, point));
+                let ours = copy.shading_normal(triangle, point);
+                let wanted = mesh.shading_normal(same, point);
                 assert!(ours.distance(wanted) < most);
             }
         }

@@ -14,10 +14,10 @@ use glam::{DVec2, DVec3};
 /// The line of a ray, prepared for many triangles.
 #[derive(Debug, Clone, Copy)]
 pub struct TriangleLine {
-    origin: DVec3,
+    pub(super) origin: DVec3,
     dir: DVec3,
     /// Two directions across the line; with `dir` they form a right-handed frame.
-    across: [DVec3; 2],
+    pub(super) across: [DVec3; 2],
     /// Distance in the scene over that along the line, 1.
     scale: f64,
 }
@@ -86,13 +86,15 @@ mod tests {
     use crate::rng::{Dimension, Sampler};
     use crate::scene::mesh::Mesh;
     use crate::scene::shape::Crossing;
-    use lumiduct_base::math::{Frame, uniform_sphere};
+    use lumiduct_base::math::{Frame, cone_direction, uniform_sphere};
     use lumiduct_base::mesh::bodies::{Normals, block, icosphere, rod};
     use lumiduct_base::mesh::{TriangleMesh, area_vector};
+    use lumiduct_files::mesh::{LengthUnit, read};
+    use std::path::Path;
 
     /// Crossings of a ray's line with all triangles.
     fn all_crossings(mesh: &Mesh, ray: &Ray) -> Vec<Crossing> {
-        (0..mesh.triangle_count()).filter_map(|triangle| mesh.crossing(triangle, ray)).collect()
+        mesh.triangles().filter_map(|triangle| mesh.crossing(triangle, ray)).collect()
     }
 
     fn count(crossings: &[Crossing], toward: Toward) -> usize {
@@ -125,7 +127,7 @@ mod tests {
             let origin = DVec3::new(12.3, -4.5, 6.7)
                 + 5.0 * uniform_sphere(sampler.pair(Dimension::EmitPosition));
             let ray = Ray::new(origin, uniform_sphere(sampler.pair(Dimension::EmitDirection)));
-            for triangle in 0..mesh.triangle_count() {
+            for triangle in mesh.triangles() {
                 let corners = mesh.corners(triangle);
                 let ours = mesh.crossing(triangle, &ray);
                 let expected = by_definition(&corners, &ray);
@@ -154,7 +156,7 @@ mod tests {
             [vec![a, b, c], on_edge(a, b).into(), on_edge(b, c).into(), on_edge(c, a).into()]
                 .concat()
         };
-        (0..mesh.triangle_count()).flat_map(of_triangle).collect()
+        mesh.triangles().flat_map(of_triangle).collect()
     }
 
     #[test]
@@ -166,7 +168,8 @@ mod tests {
         ];
         for (number, sample) in meshes.iter().enumerate() {
             for mesh in [placed(sample), Mesh::new(sample, &Frame::WORLD)] {
-                let inside = (0..mesh.triangle_count())
+                let inside = mesh
+                    .triangles()
                     .map(|triangle| mesh.corners(triangle).iter().sum::<DVec3>() / 3.0)
                     .sum::<DVec3>()
                     / mesh.triangle_count() as f64;
@@ -213,5 +216,49 @@ mod tests {
         let crossings = all_crossings(&mesh, &edge);
         assert!(count(&crossings, Toward::Front) >= 1 && count(&crossings, Toward::Back) >= 1);
         assert!(crossings.iter().all(|crossing| crossing.t.abs() == 0.5));
+    }
+
+    /// The nearest exit from a mesh for a path inside, other than the triangle that it is on.
+    fn next_exit(mesh: &Mesh, ray: &Ray, on: usize) -> Option<(usize, f64)> {
+        let line = TriangleLine::of(ray);
+        mesh.triangles()
+            .filter(|triangle| *triangle != on)
+            .filter_map(|triangle| Some((triangle, mesh.crossing_of(triangle, &line)?)))
+            .filter(|(_, crossing)| crossing.toward == Toward::Front && crossing.t > 0.0)
+            .map(|(triangle, crossing)| (triangle, crossing.t))
+            .min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    #[test]
+    fn light_in_the_guide_of_the_scenes_stays_in_until_an_end() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes/lightguide.glb");
+        let mesh = Mesh::new(&read(&path, LengthUnit::Metre).unwrap().mesh, &Frame::WORLD);
+        let face = |name| mesh.face_names().position(|other| other == name).unwrap();
+        let (entry, wall, exit) = (face("entry"), face("wall"), face("exit"));
+        assert!(mesh.chart_plane(entry).is_some() && mesh.chart_plane(exit).is_some());
+        assert_eq!(mesh.triangles().map(|t| mesh.smooth_id(t)).max(), Some(2));
+        let mut bounces = 0;
+        for index in 0..40 {
+            let mut sampler = Sampler::for_path(41, 0, index);
+            let start = mesh.sample(entry, sampler.pair(Dimension::EmitPosition)).unwrap();
+            // Inside acrylic: within 42 degrees of the axis.
+            let dir = cone_direction(0.73, sampler.pair(Dimension::EmitDirection));
+            let (mut ray, mut on) = (Ray::new(start.point, dir), start.triangle);
+            loop {
+                let (triangle, t) = next_exit(&mesh, &ray, on).expect("a leak");
+                if mesh.face_of(triangle) != wall {
+                    assert!([entry, exit].contains(&mesh.face_of(triangle)));
+                    break;
+                }
+                let (point, facet) = (ray.at(t), mesh.facet_normal(triangle));
+                let mut dir = ray.dir().reflect(mesh.shading_normal(triangle, point));
+                if dir.dot(facet) >= 0.0 {
+                    dir = dir.reflect(facet);
+                }
+                (ray, on) = (Ray::new(point, dir), triangle);
+                bounces += 1;
+            }
+        }
+        assert!(bounces > 200, "{bounces}");
     }
 }

@@ -8,14 +8,21 @@
 
 mod body;
 mod chart;
+mod face;
+mod facing;
+mod four;
 mod line;
 mod patch;
+mod tree;
 
 pub use body::{MeshBody, MeshPlace};
 pub use line::TriangleLine;
 
 use crate::scene::Ray;
-use crate::scene::shape::Crossing;
+use crate::scene::crossing::tree::{NONE, Tree};
+use crate::scene::mesh::face::{MeshFace, faces};
+use crate::scene::mesh::tree::MeshTree;
+use crate::scene::shape::{Crossing, Toward};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::mesh::{TriangleMesh, area_vector};
@@ -28,26 +35,16 @@ const FLATNESS: f64 = 1.0 / (1u64 << 22) as f64;
 /// A mesh of triangles.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// Positions of the vertices, mm; triangles share them, so that more of a mesh fits in the cache.
+    /// Positions of the vertices, mm.
     positions: Vec<DVec3>,
-    /// Vertices of each triangle, as indices of `positions`.
-    triangles: Vec<[u32; 3]>,
-    facet_normals: Vec<DVec3>,
+    /// Its triangles, which gives them their numbers.
+    tree: MeshTree,
     corner_normals: Option<Vec<[DVec3; 3]>>,
     smooth_ids: Vec<u32>,
     face_of: Vec<u32>,
     faces: Vec<MeshFace>,
     /// Largest distance of vertices of a flat face from its plane, mm.
     flatness: f64,
-}
-
-/// The triangles of one material or group.
-#[derive(Debug, Clone)]
-struct MeshFace {
-    name: String,
-    triangles: Vec<u32>,
-    /// Area of the triangles up to and including each one, mm².
-    area_up_to: Vec<f64>,
 }
 
 /// A point of a mesh.
@@ -76,31 +73,46 @@ impl Mesh {
         for normal in mesh.normals.iter_mut().flatten().flatten() {
             *normal = at.to_world(*normal);
         }
-        let normals = |triangle: usize| mesh.normals.as_ref().map(|all| &all[triangle]);
-        let facet_normals = (0..mesh.triangles.len())
-            .map(|triangle| facet_normal(&mesh.corners(triangle), normals(triangle)))
-            .collect();
+        let (tree, leaves) =
+            Tree::over(mesh.triangles.len(), |triangle| Aabb::of(mesh.corners(triangle)));
+        let places = leaves.as_flattened();
+        // First: with normals in both orders they take more memory than all else.
+        let corner_normals = mesh.normals.take().map(|normals| arranged(places, &normals));
+        let tree = MeshTree::new(tree, &leaves, &mesh);
+        let mut number = vec![0; mesh.triangles.len()];
+        for (place, triangle) in places.iter().enumerate().filter(|(_, own)| **own != NONE) {
+            number[*triangle as usize] = place as u32;
+        }
         Self {
-            faces: faces(&mesh),
-            smooth_ids,
-            facet_normals,
+            tree,
+            faces: faces(&mesh, &number),
+            smooth_ids: arranged(places, &smooth_ids),
             flatness,
-            face_of: mesh.face_of,
-            corner_normals: mesh.normals,
-            triangles: mesh.triangles,
+            face_of: arranged(places, &mesh.face_of),
+            corner_normals,
             positions: mesh.positions,
         }
     }
 
-    /// Number of triangles; they are numbered from 0.
+    /// Triangles have numbers below this one, but some of these numbers have no triangle.
+    pub fn number_limit(&self) -> usize {
+        self.face_of.len()
+    }
+
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
-        self.triangles.len()
+        self.faces.iter().map(|face| face.triangles.len()).sum()
+    }
+
+    /// The numbers of its triangles, face by face.
+    pub fn triangles(&self) -> impl Iterator<Item = usize> {
+        self.faces.iter().flat_map(|face| &face.triangles).map(|triangle| *triangle as usize)
     }
 
     /// The three vertices of a triangle, mm; counter-clockwise seen from outside.
     #[inline]
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|index| self.positions[index as usize])
+        self.tree.corners(triangle)
     }
 
     /// A box around a triangle, mm.
@@ -124,22 +136,58 @@ impl Mesh {
     pub fn crossing_of(&self, triangle: usize, line: &TriangleLine) -> Option<Crossing> {
         let corners = self.corners(triangle);
         let toward = line.passes(&corners)?;
-        Some(Crossing { t: line.distance(&corners, self.facet_normals[triangle]), toward })
+        Some(self.crossing_at(triangle, &corners, line, toward))
+    }
+
+    /// The crossing of a line with a triangle that it is known to cross.
+    #[inline(always)]
+    fn crossing_at(
+        &self,
+        triangle: usize,
+        corners: &[DVec3; 3],
+        line: &TriangleLine,
+        toward: Toward,
+    ) -> Crossing {
+        Crossing { t: line.distance(corners, self.plane_normal(triangle, corners)), toward }
+    }
+
+    /// Calls `visit` with the crossings of a line with triangles in this direction, and with their numbers, at least those before `limit`
+    /// and the smallest distance that `visit` has returned, in units of the line's scale; with the line go its ray and the padding of boxes.
+    #[inline(always)]
+    fn visit_crossings(
+        &self,
+        (ray, line, padding): (&Ray, &TriangleLine, f32),
+        toward: Toward,
+        limit: f64,
+        mut visit: impl FnMut(usize, Crossing) -> f64,
+    ) {
+        self.tree.visit((ray, line, padding), toward, limit, |triangle| {
+            let corners = self.corners(triangle);
+            visit(triangle, self.crossing_at(triangle, &corners, line, toward))
+        });
     }
 
     /// Unit normal of a triangle's plane, outward.
-    #[inline]
     pub(crate) fn facet_normal(&self, triangle: usize) -> DVec3 {
-        self.facet_normals[triangle]
+        self.plane_normal(triangle, &self.corners(triangle))
+    }
+
+    /// The same with its vertices at hand.
+    #[inline(always)]
+    fn plane_normal(&self, triangle: usize, corners: &[DVec3; 3]) -> DVec3 {
+        let normals = || self.corner_normals.as_ref().map(|all| &all[triangle]);
+        let normal = area_vector(*corners).try_normalize();
+        normal.unwrap_or_else(|| normal_without_area(corners, normals()))
     }
 
     /// Unit normal of the surface that the mesh approximates, outward: the corner normals
     /// interpolated at a point of the triangle (Phong, Commun. ACM 18 (1975) 311), or the facet's
     /// if there are no corner normals or they contradict it.
     pub(crate) fn shading_normal(&self, triangle: usize, point: DVec3) -> DVec3 {
-        let facet = self.facet_normals[triangle];
+        let corners = self.corners(triangle);
+        let facet = self.plane_normal(triangle, &corners);
         let Some(normals) = &self.corner_normals else { return facet };
-        let weights = weights(&self.corners(triangle), facet, point);
+        let weights = weights(&corners, facet, point);
         let [a, b, c] = normals[triangle];
         let normal = (weights.x * a + weights.y * b + weights.z * c).normalize_or_zero();
         if normal.dot(facet) > 0.0 { normal } else { facet }
@@ -175,20 +223,12 @@ impl Mesh {
 
     /// Area of a face, mm².
     pub(crate) fn face_area(&self, face: usize) -> f64 {
-        self.faces[face].area_up_to.last().copied().unwrap_or(0.0)
+        self.faces[face].area()
     }
 
     /// A point of a face, uniform over its area for uniform `u`; `None` for a face without area.
     pub(crate) fn sample(&self, face: usize, u: [f64; 2]) -> Option<MeshPoint> {
-        let face = &self.faces[face];
-        let total = *face.area_up_to.last().filter(|total| **total > 0.0)?;
-        // Below the total even after rounding, so that there is a triangle, and one with an area.
-        let wanted = (u[0] * total).min(total.next_down());
-        let index = face.area_up_to.partition_point(|area| *area <= wanted);
-        let before = if index == 0 { 0.0 } else { face.area_up_to[index - 1] };
-        let triangle = face.triangles[index] as usize;
-        // The remainder of the first number is again uniform within the triangle.
-        let rest = ((wanted - before) / (face.area_up_to[index] - before)).clamp(0.0, 1.0);
+        let (triangle, rest) = self.faces[face].pick(u[0])?;
         let [a, b, c] = self.corners(triangle);
         // Uniform over a triangle: Turk, Graphics Gems (1990) 24.
         let root = rest.sqrt();
@@ -197,12 +237,11 @@ impl Mesh {
     }
 }
 
-/// The normal of the plane; for a triangle without area, the mean of the corner normals, or else
-/// any direction across it.
-fn facet_normal(corners: &[DVec3; 3], normals: Option<&[DVec3; 3]>) -> DVec3 {
-    area_vector(*corners)
-        .try_normalize()
-        .or_else(|| normals?.iter().sum::<DVec3>().try_normalize())
+/// For a triangle without area, the mean of the corner normals, or else any direction across it.
+#[cold]
+fn normal_without_area(corners: &[DVec3; 3], normals: Option<&[DVec3; 3]>) -> DVec3 {
+    normals
+        .and_then(|normals| normals.iter().sum::<DVec3>().try_normalize())
         .or_else(|| {
             (corners[1] - corners[0]).try_normalize().map(|edge| edge.any_orthonormal_vector())
         })
@@ -216,31 +255,20 @@ fn weights([a, b, c]: &[DVec3; 3], facet: DVec3, point: DVec3) -> DVec3 {
     weights.max(DVec3::ZERO)
 }
 
-fn faces(mesh: &TriangleMesh) -> Vec<MeshFace> {
-    let empty = |name: &String| MeshFace {
-        name: name.clone(),
-        triangles: Vec::new(),
-        area_up_to: Vec::new(),
-    };
-    let mut faces: Vec<MeshFace> = mesh.faces.iter().map(empty).collect();
-    for (triangle, face) in mesh.face_of.iter().enumerate() {
-        let face = &mut faces[*face as usize];
-        let before = face.area_up_to.last().copied().unwrap_or(0.0);
-        face.triangles.push(triangle as u32);
-        face.area_up_to.push(before + 0.5 * area_vector(mesh.corners(triangle)).length());
-    }
-    faces
+/// Values of triangles by the places of these; any where there is none.
+fn arranged<T: Copy>(places: &[u32], values: &[T]) -> Vec<T> {
+    let first = values.first().into_iter().copied();
+    first
+        .flat_map(|any| {
+            places.iter().map(move |place| values.get(*place as usize).copied().unwrap_or(any))
+        })
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::{Dimension, Sampler};
-    use crate::scene::shape::Toward;
-    use lumiduct_base::math::cone_direction;
-    use lumiduct_base::mesh::bodies::{Normals, block, icosphere, rod};
-    use lumiduct_files::mesh::{LengthUnit, read};
-    use std::path::Path;
+    use lumiduct_base::mesh::bodies::{Normals, block, icosphere};
 
     /// Largest error of the shading normal, rad, over a point of each triangle of an ellipsoid with half axes 6, 3, 3.
     fn worst_normal(level: u32) -> f64 {
@@ -250,7 +278,7 @@ mod tests {
             *normal = DVec3::new(0.5 * normal.x, normal.y, normal.z).normalize();
         }
         let mesh = Mesh::new(&sample, &Frame::WORLD);
-        (0..mesh.triangle_count())
+        mesh.triangles()
             .map(|triangle| {
                 let [a, b, c] = mesh.corners(triangle);
                 let point = 0.5 * a + 0.3 * b + 0.2 * c;
@@ -273,7 +301,7 @@ mod tests {
     #[test]
     fn interpolated_normals_of_a_sphere_are_exact() {
         let mesh = Mesh::new(&icosphere(3.0, 1, Normals::Smooth), &Frame::WORLD);
-        for triangle in 0..mesh.triangle_count() {
+        for triangle in mesh.triangles() {
             let [a, b, c] = mesh.corners(triangle);
             let point = 0.7 * a + 0.1 * b + 0.2 * c;
             let normal = mesh.shading_normal(triangle, point);
@@ -298,91 +326,15 @@ mod tests {
         sample.triangles.push([3, 3, 3]);
         sample.face_of.extend([0, 5]);
         let mesh = Mesh::new(&sample, &Frame::WORLD);
-        for triangle in [12, 13] {
+        let flat = [0, 5].map(|face| *mesh.face_triangles(face).last().unwrap() as usize);
+        for triangle in flat {
             assert!((mesh.facet_normal(triangle).length() - 1.0).abs() < 1e-15);
             let ray = Ray::new(DVec3::splat(0.5), mesh.corners(triangle)[0] - 0.5);
             assert_eq!(mesh.crossing(triangle, &ray), None);
         }
         for face in [0, 5] {
             let end = mesh.sample(face, [1.0 - f64::EPSILON / 2.0, 0.5]).unwrap();
-            assert!(end.triangle < 12 && end.point.is_finite());
+            assert!(!flat.contains(&end.triangle) && end.point.is_finite());
         }
-    }
-
-    #[test]
-    fn samples_are_uniform_over_a_face() {
-        let mesh = Mesh::new(&block(DVec3::new(1.0, 2.0, 3.0)), &Frame::WORLD);
-        let face = mesh.face_names().position(|name| name == "plus_x").unwrap();
-        let n = 20_000u64;
-        let mut bins = [0u32; 16];
-        for index in 0..n {
-            let u = Sampler::for_path(31, 0, index).pair(Dimension::EmitPosition);
-            let sample = mesh.sample(face, u).unwrap();
-            assert_eq!(mesh.face_of(sample.triangle), face);
-            assert!((sample.point.x - 1.0).abs() < 1e-15);
-            let (y, z) = (sample.point.y / 2.0 * 4.0, sample.point.z / 3.0 * 4.0);
-            bins[(y as usize).min(3) * 4 + (z as usize).min(3)] += 1;
-        }
-        let expected = n as f64 / 16.0;
-        let chi2: f64 = bins.iter().map(|&b| (f64::from(b) - expected).powi(2) / expected).sum();
-        // 99.9 % point of chi-square with 15 degrees of freedom: 37.7.
-        assert!(chi2 < 37.7, "chi-square {chi2}");
-        assert!((mesh.face_area(face) - 6.0).abs() < 1e-14);
-    }
-
-    #[test]
-    fn a_round_wall_is_one_patch_and_so_is_every_side_of_a_block() {
-        let patches = |sample: &TriangleMesh| {
-            let mesh = Mesh::new(sample, &Frame::WORLD);
-            (0..mesh.triangle_count()).map(|t| mesh.smooth_id(t)).max().unwrap() + 1
-        };
-        assert_eq!(patches(&rod(2.0, 40.0, 48, Normals::Smooth)), 3);
-        assert_eq!(patches(&rod(2.0, 40.0, 48, Normals::None)), 50);
-        assert_eq!(patches(&block(DVec3::ONE)), 6);
-        assert_eq!(patches(&icosphere(1.0, 2, Normals::Smooth)), 1);
-    }
-
-    /// The nearest exit from a mesh for a path inside, other than the triangle that it is on.
-    fn next_exit(mesh: &Mesh, ray: &Ray, on: usize) -> Option<(usize, f64)> {
-        let line = TriangleLine::of(ray);
-        (0..mesh.triangle_count())
-            .filter(|triangle| *triangle != on)
-            .filter_map(|triangle| Some((triangle, mesh.crossing_of(triangle, &line)?)))
-            .filter(|(_, crossing)| crossing.toward == Toward::Front && crossing.t > 0.0)
-            .map(|(triangle, crossing)| (triangle, crossing.t))
-            .min_by(|one, other| one.1.total_cmp(&other.1))
-    }
-
-    #[test]
-    fn light_in_the_guide_of_the_scenes_stays_in_until_an_end() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes/lightguide.glb");
-        let mesh = Mesh::new(&read(&path, LengthUnit::Metre).unwrap().mesh, &Frame::WORLD);
-        let face = |name| mesh.face_names().position(|other| other == name).unwrap();
-        let (entry, wall, exit) = (face("entry"), face("wall"), face("exit"));
-        assert!(mesh.chart_plane(entry).is_some() && mesh.chart_plane(exit).is_some());
-        assert_eq!((0..mesh.triangle_count()).map(|t| mesh.smooth_id(t)).max(), Some(2));
-        let mut bounces = 0;
-        for index in 0..40 {
-            let mut sampler = Sampler::for_path(41, 0, index);
-            let start = mesh.sample(entry, sampler.pair(Dimension::EmitPosition)).unwrap();
-            // Inside acrylic: within 42 degrees of the axis.
-            let dir = cone_direction(0.73, sampler.pair(Dimension::EmitDirection));
-            let (mut ray, mut on) = (Ray::new(start.point, dir), start.triangle);
-            loop {
-                let (triangle, t) = next_exit(&mesh, &ray, on).expect("a leak");
-                if mesh.face_of(triangle) != wall {
-                    assert!([entry, exit].contains(&mesh.face_of(triangle)));
-                    break;
-                }
-                let (point, facet) = (ray.at(t), mesh.facet_normal(triangle));
-                let mut dir = ray.dir().reflect(mesh.shading_normal(triangle, point));
-                if dir.dot(facet) >= 0.0 {
-                    dir = dir.reflect(facet);
-                }
-                (ray, on) = (Ray::new(point, dir), triangle);
-                bounces += 1;
-            }
-        }
-        assert!(bounces > 200, "{bounces}");
     }
 }

@@ -30,3 +30,24 @@ fn in_one_plane(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge, flatness:
         && off(other, a, normal_a) <= flatness
         && off(one, b, normal_b) <= flatness
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::mesh::Mesh;
+    use glam::DVec3;
+    use lumiduct_base::math::Frame;
+    use lumiduct_base::mesh::TriangleMesh;
+    use lumiduct_base::mesh::bodies::{Normals, block, icosphere, rod};
+
+    #[test]
+    fn a_round_wall_is_one_patch_and_so_is_every_side_of_a_block() {
+        let patches = |sample: &TriangleMesh| {
+            let mesh = Mesh::new(sample, &Frame::WORLD);
+            mesh.triangles().map(|t| mesh.smooth_id(t)).max().unwrap() + 1
+        };
+        assert_eq!(patches(&rod(2.0, 40.0, 48, Normals::Smooth)), 3);
+        assert_eq!(patches(&rod(2.0, 40.0, 48, Normals::None)), 50);
+        assert_eq!(patches(&block(DVec3::ONE)), 6);
+        assert_eq!(patches(&icosphere(1.0, 2, Normals::Smooth)), 1);
+    }
+}

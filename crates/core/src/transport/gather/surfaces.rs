@@ -11,9 +11,10 @@ pub(crate) type Slot = u32;
 /// The smooth surfaces of a scene, numbered, followed by the media.
 #[derive(Debug)]
 pub struct SurfaceNumbers {
-    /// By surface that is not of a copy.
+    /// By patch.
     slots: Vec<Slot>,
-    copies: Vec<CopySlots>,
+    /// Those of bodies of triangles, in the order of their triangles.
+    bodies: Vec<BodySlots>,
     pub(super) count: usize,
     pub(super) media: usize,
     /// By surface: its analytic pieces; none for a mesh.
@@ -23,27 +24,26 @@ pub struct SurfaceNumbers {
 impl SurfaceNumbers {
     /// The surfaces of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let triangles: usize = scene.meshes.iter().map(MeshBody::triangle_count).sum();
         let mut known: BTreeMap<SmoothId, Slot> = BTreeMap::new();
-        let slots: Vec<Slot> = (0..scene.patches.len() + triangles)
+        let slots: Vec<Slot> = (0..scene.patches.len())
             .map(|prim| {
                 let next = known.len() as Slot;
                 *known.entry(scene.smooth(PrimId::new(prim))).or_insert(next)
             })
             .collect();
         let mut count = known.len();
-        // Without a number for each triangle: copies may have very many.
-        let of_copy = |copy: &MeshBody| {
+        // Without a number for each triangle: there may be very many.
+        let of_body = |body: &MeshBody| {
             let first = count as Slot;
-            count += copy.mesh.patch_count();
-            CopySlots { first_triangle: copy.first, first, mesh: Arc::clone(&copy.mesh) }
+            count += body.mesh.patch_count();
+            BodySlots { first_triangle: body.first, first, mesh: Arc::clone(&body.mesh) }
         };
-        let copies = scene.copies.iter().map(of_copy).collect();
+        let bodies = scene.mesh_bodies().map(of_body).collect();
         let mut patches = vec![Vec::new(); known.len()];
-        for (index, &slot) in slots.iter().take(scene.patches.len()).enumerate() {
+        for (index, &slot) in slots.iter().enumerate() {
             patches[slot as usize].push(PrimId::new(index));
         }
-        Self { slots, copies, count, media: scene.media.len(), patches }
+        Self { slots, bodies, count, media: scene.media.len(), patches }
     }
 
     /// The analytic pieces of a surface; none for a mesh.
@@ -60,20 +60,20 @@ impl SurfaceNumbers {
     #[inline]
     pub fn of(&self, prim: PrimId) -> Slot {
         let index = prim.index();
-        self.slots.get(index).copied().unwrap_or_else(|| self.of_copied(index))
+        self.slots.get(index).copied().unwrap_or_else(|| self.of_triangle(index))
     }
 
     #[inline(never)]
-    fn of_copied(&self, index: usize) -> Slot {
-        let after = self.copies.partition_point(|copy| copy.first_triangle <= index);
-        let copy = &self.copies[after - 1];
-        copy.first + copy.mesh.smooth_id(index - copy.first_triangle)
+    fn of_triangle(&self, index: usize) -> Slot {
+        let after = self.bodies.partition_point(|body| body.first_triangle <= index);
+        let body = &self.bodies[after - 1];
+        body.first + body.mesh.smooth_id(index - body.first_triangle)
     }
 }
 
-/// The smooth surfaces of a copy of a mesh.
+/// The smooth surfaces of a mesh or of a copy.
 #[derive(Debug)]
-struct CopySlots {
+struct BodySlots {
     /// Number of its first triangle among all surfaces.
     first_triangle: usize,
     /// Number of the first of its smooth surfaces.

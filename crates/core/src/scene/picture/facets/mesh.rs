@@ -3,7 +3,7 @@
 use crate::scene::mesh::MeshBody;
 use crate::scene::picture::facets::triangles::Triangulation;
 use glam::{DVec3, I64Vec3};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{HashMap, HashSet};
 
 /// Largest number of triangles that are drawn for a face.
 const MOST_TRIANGLES: usize = 3000;
@@ -24,8 +24,8 @@ pub(super) fn facets(faces: Vec<(&MeshBody, usize)>, cell: f64) -> Triangulation
 /// Faces with all corners in a cube merged, and without the triangles that this collapses; `None` if too many remain.
 fn joined(faces: &[(&MeshBody, usize)], cell: f64) -> Option<Triangulation> {
     let mut facets = Triangulation::default();
-    let mut corner_of: BTreeMap<[i64; 3], usize> = BTreeMap::new();
-    let mut known: BTreeSet<[usize; 3]> = BTreeSet::new();
+    let mut corner_of: HashMap<[i64; 3], usize> = HashMap::new();
+    let mut known: HashSet<[usize; 3]> = HashSet::new();
     let triangles = faces.iter().flat_map(|(body, face)| {
         body.mesh.face_triangles(*face).iter().map(|triangle| body.corners(*triangle as usize))
     });
@@ -60,7 +60,7 @@ fn cube(point: DVec3, cell: f64) -> [i64; 3] {
 mod tests {
     use super::*;
     use crate::scene::mesh::Mesh;
-    use crate::scene::{FaceId, Owner};
+    use crate::scene::{FaceId, SolidId};
     use lumiduct_base::math::Frame;
     use lumiduct_base::mesh::bodies::{Normals, icosphere};
 
@@ -68,7 +68,7 @@ mod tests {
     fn coarse_meshes_stay_as_they_are_and_fine_ones_keep_their_size_with_fewer_triangles() {
         let of = |level: u32| {
             let mesh = Mesh::new(&icosphere(3.0, level, Normals::None), &Frame::WORLD);
-            facets(vec![(&MeshBody::new(mesh, Owner::Sheet, vec![FaceId::new(0)]), 0)], 1e-3)
+            facets(vec![(&MeshBody::new(mesh, SolidId::new(0), vec![FaceId::new(0)]), 0)], 1e-3)
         };
         let coarse = of(2);
         assert_eq!((coarse.points.len(), coarse.triangles.len()), (162, 320));

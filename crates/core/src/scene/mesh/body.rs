@@ -4,6 +4,7 @@
 //! neighbours either. Distances along it are multiplied by the scale.
 
 use crate::scene::crossing::tree::padding;
+use crate::scene::mesh::tree::Sight;
 use crate::scene::mesh::{Mesh, MeshPoint, TriangleLine};
 use crate::scene::shape::{Crossing, Toward};
 use crate::scene::{FaceId, Ray, SolidId};
@@ -124,8 +125,8 @@ impl MeshBody {
             Some(place) => place.ray_from_scene(ray),
         };
         let line = TriangleLine::scaled(&ray, scale);
-        let found = (&ray, &line, self.padding);
-        self.mesh.visit_crossings(found, toward, limit / scale, |triangle, crossing| {
+        let sight = Sight { ray: &ray, line: &line, padding: self.padding };
+        self.mesh.visit_crossings(sight, toward, limit / scale, |triangle, crossing| {
             visit(triangle, crossing) / scale
         });
     }

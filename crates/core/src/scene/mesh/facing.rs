@@ -1,7 +1,7 @@
 //! Which way the triangles of a part of a mesh face, as a cone around their normals.
 //!
-//! Light within a body only leaves it, so that triangles that face against it need not be looked at, and nor need a box of them: those
-//! around the start of a ray, mostly. A cone of directions turned by a right angle bounds all lines that cross one of its
+//! Light within a body only leaves it, so that a box need not be opened if all triangles in it face against the light, as most of
+//! those around the start of a ray do. A cone of directions turned by a right angle bounds all lines that cross one of its
 //! triangles outward (Shirman & Abi-Ezzi, "The cone of normals technique for fast processing of curved patches", Comput. Graph. Forum
 //! 12 (1993) 261).
 
@@ -10,7 +10,7 @@ use crate::scene::shape::Toward;
 use glam::DVec3;
 use wide::i16x8;
 
-/// Cones of normals are widened by this, rad: rounding of normals, and of lines seen from nearly along a triangle.
+/// Cones of normals are widened by this, rad, far more than rounding can turn a triangle that is seen nearly edge-on.
 const MARGIN: f64 = 2e-3;
 /// Cones of greater half angles, rad, leave out nothing.
 const WIDEST: f64 = 1.5;
@@ -74,7 +74,7 @@ impl NodeCones {
         for (own, axis) in self.axis.iter_mut().zip(axis.to_array()) {
             own.as_mut_array()[slot] = axis as i16;
         }
-        // Five units cover the rounding of both vectors and of three products.
+        // Five units cover the rounding of the axis and of the direction, up to 0.43 each, and of three products, up to 1 each.
         self.sine.as_mut_array()[slot] = (PRODUCT_UNIT * cone.angle.sin()).ceil() as i16 + 5;
     }
 

@@ -4,7 +4,7 @@
 //! Light cannot leak between triangles: both triangles at an edge use identical numbers for the
 //! side of a line ([`TriangleLine`]), and a line exactly through an edge or a vertex crosses every triangle
 //! there. A path that leaves a triangle skips that triangle; otherwise orientation decides, not a
-//! small distance. The mesh does not know finishes, media, or the tree that finds the candidates.
+//! small distance. The mesh does not know finishes or media.
 
 mod body;
 mod chart;
@@ -21,7 +21,7 @@ pub use line::TriangleLine;
 use crate::scene::Ray;
 use crate::scene::crossing::tree::{NONE, Tree};
 use crate::scene::mesh::face::{MeshFace, faces};
-use crate::scene::mesh::tree::MeshTree;
+use crate::scene::mesh::tree::{MeshTree, Sight};
 use crate::scene::shape::{Crossing, Toward};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
@@ -57,7 +57,7 @@ pub(crate) struct MeshPoint {
 }
 
 impl Mesh {
-    /// A copy of a mesh in the frame `at`. Indices of `mesh` must be valid, as those of every mesh from a
+    /// A copy of a mesh of one or more triangles in the frame `at`. Indices of `mesh` must be valid, as those of every mesh from a
     /// file are.
     pub fn new(mesh: &TriangleMesh, at: &Frame) -> Self {
         Self::moved(mesh.clone(), at)
@@ -152,18 +152,18 @@ impl Mesh {
     }
 
     /// Calls `visit` with the crossings of a line with triangles in this direction, and with their numbers, at least those before `limit`
-    /// and the smallest distance that `visit` has returned, in units of the line's scale; with the line go its ray and the padding of boxes.
+    /// and the smallest distance that `visit` has returned. Both are in the coordinates of the mesh; distances of crossings are in mm.
     #[inline(always)]
     fn visit_crossings(
         &self,
-        (ray, line, padding): (&Ray, &TriangleLine, f32),
+        sight: Sight<'_>,
         toward: Toward,
         limit: f64,
         mut visit: impl FnMut(usize, Crossing) -> f64,
     ) {
-        self.tree.visit((ray, line, padding), toward, limit, |triangle| {
+        self.tree.visit(sight, toward, limit, |triangle| {
             let corners = self.corners(triangle);
-            visit(triangle, self.crossing_at(triangle, &corners, line, toward))
+            visit(triangle, self.crossing_at(triangle, &corners, sight.line, toward))
         });
     }
 
@@ -257,12 +257,7 @@ fn weights([a, b, c]: &[DVec3; 3], facet: DVec3, point: DVec3) -> DVec3 {
 
 /// Values of triangles by the places of these; any where there is none.
 fn arranged<T: Copy>(places: &[u32], values: &[T]) -> Vec<T> {
-    let first = values.first().into_iter().copied();
-    first
-        .flat_map(|any| {
-            places.iter().map(move |place| values.get(*place as usize).copied().unwrap_or(any))
-        })
-        .collect()
+    places.iter().map(|place| *values.get(*place as usize).unwrap_or(&values[0])).collect()
 }
 
 #[cfg(test)]

@@ -11,10 +11,29 @@ use crate::scene::mesh::facing::{FacedWay, NodeCones, NormalCone};
 use crate::scene::mesh::four::{FourTriangles, LineOfFour};
 use crate::scene::shape::Toward;
 use glam::DVec3;
-use lumiduct_base::mesh::{TriangleMesh, area_vector};
+use lumiduct_base::mesh::{MAX_SHOWN_TRIANGLES, TriangleMesh, area_vector};
 
-/// A triangle whose smallest height, over its largest coordinate, is less has no normal that rounding could not turn, 1.
-const LEAST_HEIGHT: f64 = 1e-9;
+/// The normal of a triangle whose smallest height, over the largest coordinate of its mesh, is less may be turned by rounding, 1.
+///
+/// Seen from a distance D the vertices are off by some 5e-16 D. That turns a triangle of height h only if the line is within
+/// 5e-16 D/h of its plane, which is less than the margin of the cones (2e-3) for D up to 4e5 mesh sizes.
+const LEAST_HEIGHT: f64 = 1e-7;
+
+const _: () = assert!(
+    MAX_SHOWN_TRIANGLES * LEAF as u64 <= u32::MAX as u64,
+    "numbers of triangles fit, even with one in each leaf"
+);
+
+/// A line to be followed through a tree.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sight<'s> {
+    /// The ray that it starts with.
+    pub(super) ray: &'s Ray,
+    /// The line.
+    pub(super) line: &'s TriangleLine,
+    /// By how much boxes are taken to be larger.
+    pub(super) padding: f32,
+}
 
 /// A tree over the triangles of a mesh.
 #[derive(Debug, Clone)]
@@ -30,9 +49,12 @@ impl MeshTree {
     /// The triangles of a mesh in the leaves of a tree over their boxes.
     pub(super) fn new(tree: Tree, leaves: &[Leaf], mesh: &TriangleMesh) -> Self {
         let fours = leaves.iter().map(|leaf| FourTriangles::of(mesh, leaf)).collect();
+        let least_height = LEAST_HEIGHT * mesh.bounds().largest_coordinate();
         let cones = cones(&tree, |leaf| {
             let own = leaves[leaf].iter().take_while(|triangle| **triangle != NONE);
-            NormalCone::around(own.map(|triangle| cone(mesh, *triangle as usize)))
+            NormalCone::around(
+                own.map(|triangle| cone(mesh.corners(*triangle as usize), least_height)),
+            )
         });
         Self { tree, cones, fours }
     }
@@ -43,20 +65,20 @@ impl MeshTree {
         self.fours[triangle / LEAF].corners(triangle % LEAF)
     }
 
-    /// Calls `visit` with every triangle that a line crosses in this direction, in the part of it before `limit`, and the smallest
-    /// distance that `visit` has returned, mm; with the line go its ray and the padding of boxes.
+    /// Calls `visit` with every triangle that a line crosses in this direction, in the part of it before `limit` and the smallest
+    /// distance that `visit` has returned; distances are in the coordinates of the mesh.
     #[inline(always)]
     pub(super) fn visit(
         &self,
-        (ray, line, padding): (&Ray, &TriangleLine, f32),
+        sight: Sight<'_>,
         toward: Toward,
         limit: f64,
         mut visit: impl FnMut(usize) -> f64,
     ) {
-        let facing = FacedWay::new(ray.dir(), toward);
-        let line = LineOfFour::new(line, toward);
+        let facing = FacedWay::new(sight.ray.dir(), toward);
+        let line = LineOfFour::new(sight.line, toward);
         let among = |node: usize| self.cones[node].faced(&facing);
-        self.tree.visit((ray, padding), limit, among, |leaf| {
+        self.tree.visit((sight.ray, sight.padding), limit, among, |leaf| {
             let mut crossed = line.crossed(&self.fours[leaf]);
             let mut limit = f64::INFINITY;
             while let Some(lane) = take_bit(&mut crossed) {
@@ -67,15 +89,13 @@ impl MeshTree {
     }
 }
 
-/// The directions that the normal of a triangle may have.
-fn cone(mesh: &TriangleMesh, triangle: usize) -> NormalCone {
-    let corners = mesh.corners(triangle);
+/// The directions that the normal of a triangle may have; all if its smallest height is less than this, mm.
+fn cone(corners: [DVec3; 3], least_height: f64) -> NormalCone {
     let [a, b, c] = corners;
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let largest = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
-    // Twice the area is the longest side times the smallest height.
     let double_area = area_vector(corners);
-    let is_certain = double_area.length() > LEAST_HEIGHT * largest * longest;
+    // Twice the area is the longest side times the smallest height.
+    let is_certain = double_area.length() > least_height * longest;
     double_area.try_normalize().filter(|_| is_certain).map_or(NormalCone::ALL, NormalCone::of)
 }
 
@@ -141,8 +161,8 @@ mod tests {
                     let line = TriangleLine::of(&ray);
                     for toward in [Toward::Front, Toward::Back] {
                         let mut found = Vec::new();
-                        let from = (&ray, &line, padding(100.0));
-                        mesh.visit_crossings(from, toward, f64::INFINITY, |triangle, crossing| {
+                        let sight = Sight { ray: &ray, line: &line, padding: padding(100.0) };
+                        mesh.visit_crossings(sight, toward, f64::INFINITY, |triangle, crossing| {
                             assert_eq!(Some(crossing), mesh.crossing_of(triangle, &line));
                             assert_eq!(crossing.toward, toward);
                             found.push(triangle);

@@ -75,6 +75,7 @@ impl<B: Fn(usize) -> Aabb> Arrangement<B> {
             if node.is_leaf() {
                 let first = node.first_index as usize;
                 let own = &binary.primitive_indices[first..first + node.prim_count as usize];
+                assert!(own.len() <= LEAF, "obvhs keeps the limit");
                 let mut leaf = [NONE; LEAF];
                 for (slot, place) in leaf.iter_mut().zip(own) {
                     *slot = places[*place as usize].surface;

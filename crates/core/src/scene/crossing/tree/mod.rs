@@ -1,7 +1,7 @@
 //! A tree of boxes, eight to a node, tested all at once.
 //!
 //! It is collapsed from the binary tree of obvhs: a node takes the eight boxes that remain when its largest ones have been opened again
-//! and again (Wald, Benthin & Boulos, "Getting rid of packets", IEEE Symposium on Interactive Ray Tracing 2008, 49). Boxes are f32, padded
+//! and again (Wald, Benthin & Boulos, "Getting rid of packets", IEEE Symposium on Interactive Ray Tracing 2008, 49). Boxes are f32, rounded
 //! outward, and cull only.
 
 mod arrange;
@@ -20,10 +20,11 @@ pub(crate) const WIDTH: usize = 8;
 pub(crate) const LEAF: usize = 4;
 /// In a leaf of fewer surfaces: no further one.
 pub(crate) const NONE: u32 = u32::MAX;
-/// Least size of a component of a direction, 1: with 0, an origin on a padded side would give 0 · ∞. A coordinate over it is finite in f32.
+/// Least size of a component of a direction, 1: with 0, a moved origin on a side would give 0 · ∞. A coordinate over it is finite in f32.
 const LEAST_COMPONENT: f32 = 1e-25;
 
-/// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the ray's origin, of its padding, and of the slab test.
+/// Boxes are taken to be larger by this many f32 ulp of the largest coordinate. Rounding of the ray's origin and of its padding takes half an ulp
+/// each, that of the slab test four.
 const PADDING_ULP: f64 = 10.0;
 
 /// A tree over boxes, with numbers for its leaves.
@@ -197,7 +198,7 @@ impl Slabs {
     }
 }
 
-/// By how much boxes must grow for rays whose origins, and themselves, have coordinates up to `largest_coordinate`.
+/// By how much boxes must be taken to be larger if they and the origins of rays have coordinates up to `largest_coordinate`.
 pub(crate) fn padding(largest_coordinate: f64) -> f32 {
     (PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate) as f32
 }

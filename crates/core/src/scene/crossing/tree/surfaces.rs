@@ -23,7 +23,8 @@ impl SurfaceTree {
         Self { tree, leaves, padding: padding(largest_coordinate) }
     }
 
-    /// Calls `visit` with the index of every surface whose box the ray meets before the smallest distance that `visit` has returned.
+    /// Calls `visit` with the index of every surface whose box, taken a little larger, the ray meets before the smallest distance that
+    /// `visit` has returned.
     #[inline]
     pub(crate) fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         let all = |_| u32::MAX;

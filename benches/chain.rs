@@ -15,7 +15,7 @@ mod spread;
 
 use clock::cpu_seconds;
 use glam::DVec3;
-use guides::{B2, mesh_scene, rod_mesh};
+use guides::{B2, RODS, mesh_scene, rod_mesh};
 use lumiduct_base::math::Frame;
 use lumiduct_base::mesh::TriangleMesh;
 use lumiduct_core::rng::{Dimension, Sampler};
@@ -28,8 +28,6 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-/// Facets around the rod and rings along it: 20,022 triangles, 100,800, and 979,600.
-const RODS: [[u32; 2]; 3] = [[141, 70], [224, 224], [620, 789]];
 /// Paths followed in each run.
 const PATHS: u64 = 100_000;
 /// Runs of each program.

@@ -69,6 +69,9 @@ pub(crate) const B4: Rod = Rod {
     gap: 0.1,
 };
 
+/// Facets around a rod of triangles and rings along it: 20,022 triangles, 100,800, and 979,600.
+pub(crate) const RODS: [[u32; 2]; 3] = [[141, 70], [224, 224], [620, 789]];
+
 /// The scene of a tube; its one sensor is on the open exit.
 pub(crate) fn tube_scene(tube: &Tube) -> Scene {
     let mut builder = in_air();

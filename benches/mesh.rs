@@ -14,7 +14,7 @@ mod guides;
 mod spread;
 
 use clock::cpu_seconds;
-use guides::{B2, mesh_scene, rod_mesh};
+use guides::{B2, RODS, mesh_scene, rod_mesh};
 use lumiduct_base::math::Frame;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::mesh::{Mesh, TriangleLine};
@@ -31,8 +31,6 @@ use spread::Spread;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// Facets around the rod and rings along it: 20,022 triangles, 100,800, and 979,600.
-const RODS: [[u32; 2]; 3] = [[141, 70], [224, 224], [620, 789]];
 /// Rays traced in each run.
 const RAYS: usize = 40_000;
 /// Every how many rays one is tested against all triangles.

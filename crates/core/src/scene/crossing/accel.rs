@@ -98,7 +98,7 @@ mod tests {
         assert!((exit.distance() - 0.5).abs() < 1e-12);
     }
 
-    /// A housing: a wall of 60 mm of which one side is divided into strips that are down to 1e-7 mm wide, and fans of slivers at both ends.
+    /// A housing of 60 mm. One of its sides is cut into strips, the narrowest 1e-7 mm wide, and both ends are fans of slivers.
     fn housing() -> TriangleMesh {
         let strips = (0..200).map(|index| DVec2::new(20.0 * 0.91_f64.powi(index), 10.0));
         let corners = [DVec2::ZERO, DVec2::new(20.0, 0.0)];

@@ -104,7 +104,7 @@ impl MeshBody {
         self.planes = planes.into();
     }
 
-    /// Tells it that rays start at coordinates up to `largest_coordinate`, mm, in the scene.
+    /// Sets the largest coordinate, mm, at which rays may start in the scene.
     pub(crate) fn set_reach(&mut self, largest_coordinate: f64) {
         let reach = self.place.as_ref().map(|place| place.reach(largest_coordinate));
         self.padding = padding(reach.unwrap_or(largest_coordinate));

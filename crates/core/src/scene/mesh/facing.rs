@@ -122,9 +122,8 @@ mod tests {
             let axis = uniform_sphere(sampler.pair(Dimension::EmitPosition));
             let width = 1.4 * sampler.one(Dimension::EmitPosition);
             let frame = Frame::from_axis(DVec3::ZERO, axis);
-            let mut normal = || {
-                frame.to_world(cone_direction(width.sin(), sampler.pair(Dimension::EmitDirection)))
-            };
+            let mut normal =
+                || frame.to_world(cone_direction(width, sampler.pair(Dimension::EmitDirection)));
             let normals = [normal(), normal(), normal(), normal()];
             let own = NormalCone::around(normals.into_iter().map(NormalCone::of));
             let [wide, one] = [own.angle, NormalCone::of(axis).angle];

@@ -1,7 +1,7 @@
 //! Four triangles at once: which of them a line crosses.
 //!
 //! The same operations on the same numbers as for one triangle ([`TriangleLine::passes`]), so that the answers are the same to the
-//! last bit, in four lanes. Of some twenty triangles that a search looks at one is crossed.
+//! last bit, in four lanes. Of some 18 triangles that a search looks at one is crossed.
 
 use crate::scene::crossing::tree::{LEAF, Leaf, NONE};
 use crate::scene::mesh::TriangleLine;

@@ -1,8 +1,8 @@
 //! The triangles of a mesh that a ray crosses one way, out of it or into it.
 //!
 //! A tree of boxes with the cones of the normals in them: boxes whose triangles all face the other way are passed over. Its leaves hold
-//! the triangles, four at most: all that a crossing needs lies in one place of memory, for which a search waits once. So triangles
-//! are numbered by their places in the leaves, of which some are empty.
+//! the triangles, four at most: all that a crossing needs lies in one place of memory, for which a search waits once. A triangle's
+//! number is its place in the leaves, so some numbers have no triangle.
 
 use crate::scene::Ray;
 use crate::scene::crossing::tree::{LEAF, Leaf, NONE, Tree, TreeBranch, take_bit};

@@ -199,10 +199,9 @@ fn shells(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> usize {
     present.len()
 }
 
-/// An edge between two flat pieces of a mesh, neither smoothed by normals.
+/// An edge at which the surface turns slightly and no normals smooth it.
 struct Turn {
     triangles: [u32; 2],
-    pieces: [u32; 2],
     /// Angle by which the surface turns, degrees; positive where it is convex.
     angle_deg: f64,
 }
@@ -212,10 +211,11 @@ struct Turn {
 /// surface bends light as that surface does, so it does not count, and neither do flat faces that
 /// meet at an angle.
 fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<CoarseFacets> {
-    let piece_of = flat_pieces(mesh, half_edges);
-    let turns = turns(mesh, half_edges, &piece_of);
-    let turn = turns_of_walls(mesh.triangles.len(), &turns, &piece_of);
-    let area = |triangle: usize| 0.5 * area_vector(mesh.corners(triangle)).length();
+    let areas: Vec<DVec3> =
+        (0..mesh.triangles.len()).map(|triangle| area_vector(mesh.corners(triangle))).collect();
+    let (turns, piece_of) = turns(mesh, half_edges, &areas);
+    let turn = turns_of_walls(&turns, &piece_of);
+    let area = |triangle: usize| 0.5 * areas[triangle].length();
     let total: f64 = (0..turn.len()).map(area).sum();
     let mut turned: Vec<(f64, f64)> = turn
         .iter()
@@ -233,58 +233,48 @@ fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<CoarseFacets> 
     Some(CoarseFacets { turn_deg: *turn_deg, area_share: curved / total })
 }
 
-/// The flat piece of each triangle.
-fn flat_pieces(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Vec<u32> {
-    let mut pieces = Groups::new(mesh.triangles.len());
-    for edge in half_edges.chunk_by(same_edge) {
-        if let [one, other] = edge
-            && dihedral_deg(mesh, one, other) < FLAT_DEG
-        {
-            pieces.join(one.triangle, other.triangle);
-        }
-    }
-    pieces.numbered()
-}
-
-/// The edges at which the surface turns slightly and no normals smooth it.
-fn turns(mesh: &TriangleMesh, half_edges: &[HalfEdge], piece_of: &[u32]) -> Vec<Turn> {
-    let mut turns = Vec::new();
+/// The edges between flat pieces at which the surface turns slightly and no normals smooth it, and the piece of each triangle.
+fn turns(mesh: &TriangleMesh, half_edges: &[HalfEdge], areas: &[DVec3]) -> (Vec<Turn>, Vec<u32>) {
+    let (mut turns, mut pieces) = (Vec::new(), Groups::new(areas.len()));
     for edge in half_edges.chunk_by(same_edge) {
         let [one, other] = edge else { continue };
-        let angle = dihedral_deg(mesh, one, other);
+        let triangles = [one.triangle, other.triangle];
+        let [near, far] = triangles.map(|triangle| areas[triangle as usize]);
+        let angle = dihedral_deg(near, far);
+        if angle < FLAT_DEG {
+            pieces.join(one.triangle, other.triangle);
+        }
         let is_turn = (FLAT_DEG..SHARP_DEG).contains(&angle)
             && !normals_agree(mesh, one, other)
-            && [one, other].iter().all(|side| has_own_normals(mesh, side.triangle as usize));
+            && triangles.iter().all(|own| has_own_normals(mesh, *own as usize, areas));
         if !is_turn {
             continue;
         }
-        let far = mesh.corners(other.triangle as usize)[other.opposite_corner()];
-        let near = mesh.corners(one.triangle as usize);
-        let is_convex = (far - near[0]).dot(area_vector(near)) < 0.0;
-        turns.push(Turn {
-            triangles: [one.triangle, other.triangle],
-            pieces: [one, other].map(|side| piece_of[side.triangle as usize]),
-            angle_deg: if is_convex { angle } else { -angle },
-        });
+        let beyond = mesh.corners(other.triangle as usize)[other.opposite_corner()];
+        let here = mesh.positions[one.low as usize];
+        let is_convex = (beyond - here).dot(near) < 0.0;
+        turns.push(Turn { triangles, angle_deg: if is_convex { angle } else { -angle } });
     }
-    turns
+    (turns, pieces.numbered())
 }
 
 /// Whether all corner normals of a triangle equal its facet normal.
-fn has_own_normals(mesh: &TriangleMesh, triangle: usize) -> bool {
+fn has_own_normals(mesh: &TriangleMesh, triangle: usize, areas: &[DVec3]) -> bool {
     let Some(normals) = &mesh.normals else { return true };
-    let facet = area_vector(mesh.corners(triangle)).normalize_or_zero();
+    let facet = areas[triangle].normalize_or_zero();
     normals[triangle].iter().all(|normal| normal.distance(facet) < OWN_NORMAL)
 }
 
-/// The largest turn at each of `count` triangles that belongs to a curved wall, degrees; 0 at all others.
-fn turns_of_walls(count: usize, turns: &[Turn], piece_of: &[u32]) -> Vec<f64> {
+/// The largest turn at each triangle that belongs to a curved wall, degrees; 0 at all others.
+fn turns_of_walls(turns: &[Turn], piece_of: &[u32]) -> Vec<f64> {
     let pieces = piece_of.iter().max().map_or(0, |last| *last as usize + 1);
+    let joined = |turn: &Turn| turn.triangles.map(|triangle| piece_of[triangle as usize]);
     // By piece: its neighbours and the angles to them.
     let mut neighbours: Vec<Vec<(u32, f64)>> = vec![Vec::new(); pieces];
-    for Turn { pieces: [a, b], angle_deg, .. } in turns {
-        neighbours[*a as usize].push((*b, *angle_deg));
-        neighbours[*b as usize].push((*a, *angle_deg));
+    for turn in turns {
+        let [a, b] = joined(turn);
+        neighbours[a as usize].push((b, turn.angle_deg));
+        neighbours[b as usize].push((a, turn.angle_deg));
     }
     let goes_on = |piece: u32, from: u32, angle: f64| {
         neighbours[piece as usize].iter().any(|(other, next)| {
@@ -293,21 +283,23 @@ fn turns_of_walls(count: usize, turns: &[Turn], piece_of: &[u32]) -> Vec<f64> {
     };
     // A turn belongs to a wall if the wall continues with similar turns beyond one of its two
     // pieces.
-    let is_of_wall: Vec<bool> = turns
+    let of_walls: Vec<&Turn> = turns
         .iter()
-        .map(|Turn { pieces: [a, b], angle_deg, .. }| {
-            goes_on(*a, *b, *angle_deg) || goes_on(*b, *a, *angle_deg)
+        .filter(|turn| {
+            let [a, b] = joined(turn);
+            goes_on(a, b, turn.angle_deg) || goes_on(b, a, turn.angle_deg)
         })
         .collect();
     let mut walls = Groups::new(pieces);
-    let of_walls = || turns.iter().zip(&is_of_wall).filter(|(_, is_of_wall)| **is_of_wall);
-    of_walls().for_each(|(turn, _)| walls.join(turn.pieces[0], turn.pieces[1]));
+    for [a, b] in of_walls.iter().map(|turn| joined(turn)) {
+        walls.join(a, b);
+    }
     let wall_of = walls.numbered();
     let mut sizes = vec![0usize; pieces];
     wall_of.iter().for_each(|wall| sizes[*wall as usize] += 1);
-    let mut largest = vec![0.0f64; count];
-    for (turn, _) in of_walls() {
-        if sizes[wall_of[turn.pieces[0] as usize] as usize] >= LEAST_FACETS {
+    let mut largest = vec![0.0f64; piece_of.len()];
+    for turn in of_walls {
+        if sizes[wall_of[joined(turn)[0] as usize] as usize] >= LEAST_FACETS {
             for triangle in turn.triangles {
                 let largest = &mut largest[triangle as usize];
                 *largest = largest.max(turn.angle_deg.abs());
@@ -317,9 +309,8 @@ fn turns_of_walls(count: usize, turns: &[Turn], piece_of: &[u32]) -> Vec<f64> {
     largest
 }
 
-/// Angle between the normals of two facets, degrees; 0 for one without area.
-fn dihedral_deg(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge) -> f64 {
-    let [one, other] = [one, other].map(|side| area_vector(mesh.corners(side.triangle as usize)));
+/// Angle between two facets by their areas, degrees; 0 for one without area.
+fn dihedral_deg(one: DVec3, other: DVec3) -> f64 {
     one.cross(other).length().atan2(one.dot(other)).to_degrees()
 }
 

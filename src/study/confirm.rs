@@ -1,4 +1,4 @@
-//! The best design of a search traced again, with random numbers that the search has not used and by a second estimator.
+//! What a search has found traced again, with random numbers that the search has not used and by a second estimator.
 
 use crate::study::designs::Design;
 use crate::study::execute::{DesignBatch, DesignTracing};
@@ -7,11 +7,11 @@ use lumiduct_core::plan::Request;
 use lumiduct_input::{Keep, Setting, Settings, Study};
 use lumiduct_report::study::{Confirmation, DesignRecord};
 
-/// Traces the best of some designs again by the estimator of the study and by another, which no scene that fluoresces has; `None`
+/// Traces some of all designs again by the estimator of the study and by another, which no scene that fluoresces has; `None`
 /// if it was interrupted.
 pub(crate) fn confirmations(
     batch: &DesignBatch<'_>,
-    best: &DesignRecord,
+    found: &[&DesignRecord],
     designs: usize,
 ) -> Result<Option<Vec<Confirmation>>> {
     let run = &batch.study.base.run;
@@ -19,22 +19,31 @@ pub(crate) fn confirmations(
     if !batch.study.base.scene.fluoresces() {
         estimators.push(second(run.estimator));
     }
-    let tracing = DesignTracing::new(batch, [designs + estimators.len(), estimators.len()])?;
-    let setting = |name: &String| best.settings.get(name).cloned().unwrap_or(Setting::AsInScene);
-    let settings = batch.study.parameters.iter().map(|own| setting(&own.name)).collect();
-    let design = Design { number: best.design, settings };
+    let runs = found.len() * estimators.len();
+    let tracing = DesignTracing::new(batch, [designs + runs, runs])?;
     let seed = fresh_seed(batch.study);
-    let mut found = Vec::new();
-    for estimator in estimators {
-        let fresh =
-            Settings { seed: Some(seed), estimator: Some(estimator), ..tracing.common.clone() };
-        let Some(outcome) = tracing.outcome(&design, &fresh, Keep::Records)? else {
-            return Ok(None);
-        };
-        tracing.board.end(design.number);
-        found.push(Confirmation { seed, estimator: estimator.name().to_owned(), outcome });
+    let is_front = batch.study.objectives().len() > 1;
+    let mut again = Vec::new();
+    for own in found {
+        let setting = |name: &String| own.settings.get(name).cloned().unwrap_or(Setting::AsInScene);
+        let settings = batch.study.parameters.iter().map(|own| setting(&own.name)).collect();
+        let design = Design { number: own.design, settings };
+        for estimator in estimators.iter().copied() {
+            let fresh =
+                Settings { seed: Some(seed), estimator: Some(estimator), ..tracing.common.clone() };
+            let Some(outcome) = tracing.outcome(&design, &fresh, Keep::Records)? else {
+                return Ok(None);
+            };
+            tracing.board.end(design.number);
+            again.push(Confirmation {
+                design: is_front.then_some(design.number),
+                seed,
+                estimator: estimator.name().to_owned(),
+                outcome,
+            });
+        }
     }
-    Ok(Some(found))
+    Ok(Some(again))
 }
 
 /// A seed of the random numbers of light that a search has not used.

@@ -5,11 +5,11 @@
 //! design is read, judged or written, batches of another are traced.
 
 use crate::pipeline::{self, BUILD, Stop};
+use crate::study::board::{BatchEvent, Board};
 use crate::study::designs::Design;
 use crate::study::store::Store;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
-use lumiduct_base::number::{format_value, format_with_error};
 use lumiduct_core::measure;
 use lumiduct_core::transport::{Interrupt, batch_paths};
 use lumiduct_input::{Job, Keep, Setting, Settings, Study};
@@ -17,75 +17,11 @@ use lumiduct_report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignR
 use lumiduct_report::{self as report, Existing, Folder, FolderLock, Pictures};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// A batch contains the same paths in all designs, and this fraction of those of a run of the scene
 /// alone: designs are small, and end between waves of 128 batches.
 const BATCH_PARTS: u64 = 8;
-
-/// What a batch reports before its results.
-#[derive(Debug, Clone, Copy)]
-pub enum BatchEvent<'a> {
-    /// Study and scene have been read, with these remarks.
-    Read(&'a [Diagnostic]),
-    /// Designs are being computed.
-    Progress(BatchProgress),
-}
-
-/// Progress of a batch.
-#[derive(Debug, Clone, Copy)]
-pub struct BatchProgress {
-    /// Designs with a record, including those of an earlier run.
-    pub done: usize,
-    /// Designs that need one.
-    pub wanted: usize,
-    /// Designs recorded by an earlier run.
-    pub found: usize,
-    /// Share of this run's work that is done, 0..=1: designs that have ended, and parts of those in flight.
-    pub fraction: f64,
-    /// Time since the start.
-    pub elapsed: Duration,
-    /// The best design of a search so far.
-    pub best: Option<BestDesign>,
-}
-
-/// The best design of a search so far.
-#[derive(Debug, Clone, Copy)]
-pub struct BestDesign {
-    /// Its number, from 1.
-    pub number: usize,
-    /// The measure that decides, and its error.
-    pub value: f64,
-    /// Standard error with bias.
-    pub error: f64,
-    /// Whether it passes every check; if not, it is the closest to that.
-    pub passes: bool,
-}
-
-impl BatchProgress {
-    /// Designs done, and the time left.
-    pub fn sentence(&self) -> String {
-        let found = if self.found > 0 {
-            format!(" ({} of them before)", self.found)
-        } else {
-            String::new()
-        };
-        let mut text = format!("{} of {} designs{found}", self.done, self.wanted);
-        if self.fraction > 0.0 {
-            let left = self.elapsed.as_secs_f64() * (1.0 - self.fraction) / self.fraction;
-            text += &format!(", {left:.0} s left");
-        }
-        if let Some(BestDesign { number, value, error, passes }) = self.best {
-            let found =
-                if error > 0.0 { format_with_error(value, error) } else { format_value(value) };
-            text += &match passes {
-                true => format!(", best {number}: {found}"),
-                false => format!(", design {number} is the closest to passing its checks"),
-            };
-        }
-        text
-    }
-}
 
 /// A batch in progress.
 pub(crate) struct DesignBatch<'a> {
@@ -188,7 +124,7 @@ impl<'a> DesignTracing<'a> {
             ..study.common.clone()
         };
         batch.store.begin_timing()?;
-        let board = Board::new(counts, batch);
+        let board = Board::new(counts, batch.watch);
         board.show();
         Ok(Self { batch, common, board })
     }
@@ -314,71 +250,4 @@ fn sentences(diagnostics: &[Diagnostic]) -> String {
         format!("{key}{}", diagnostic.message)
     };
     errors.map(sentence).collect::<Vec<_>>().join("; ")
-}
-
-/// Progress of all designs in flight.
-pub(crate) struct Board<'a> {
-    wanted: usize,
-    pending: usize,
-    start: Instant,
-    watch: &'a (dyn Fn(BatchEvent<'_>) + Sync),
-    state: Mutex<BoardState>,
-}
-
-/// What changes on a board.
-#[derive(Default)]
-struct BoardState {
-    /// Designs that have ended.
-    ended: usize,
-    /// Numbers of those in flight, with the shares that are done.
-    in_flight: Vec<(usize, f64)>,
-    best: Option<BestDesign>,
-}
-
-impl<'a> Board<'a> {
-    fn new([wanted, pending]: [usize; 2], batch: &DesignBatch<'a>) -> Self {
-        let state = Mutex::default();
-        Self { wanted, pending, start: Instant::now(), watch: batch.watch, state }
-    }
-
-    fn go_on(&self, design: usize, fraction: f64) {
-        if let Ok(mut state) = self.state.lock() {
-            match state.in_flight.iter_mut().find(|(number, _)| *number == design) {
-                Some(own) => own.1 = fraction,
-                None => state.in_flight.push((design, fraction)),
-            }
-        }
-        self.show();
-    }
-
-    /// Shows another best design of a search.
-    pub(crate) fn show_best(&self, best: BestDesign) {
-        if let Ok(mut state) = self.state.lock() {
-            state.best = Some(best);
-        }
-        self.show();
-    }
-
-    pub(crate) fn end(&self, design: usize) {
-        if let Ok(mut state) = self.state.lock() {
-            state.ended += 1;
-            state.in_flight.retain(|(number, _)| *number != design);
-        }
-        self.show();
-    }
-
-    fn show(&self) {
-        let Ok(state) = self.state.lock() else { return };
-        let BoardState { ended, in_flight, best } = &*state;
-        let in_flight = in_flight.iter().map(|(_, share)| share).sum::<f64>();
-        let found = self.wanted - self.pending;
-        (self.watch)(BatchEvent::Progress(BatchProgress {
-            done: found + ended,
-            wanted: self.wanted,
-            found,
-            fraction: ((*ended as f64 + in_flight) / self.pending.max(1) as f64).min(1.0),
-            elapsed: self.start.elapsed(),
-            best: *best,
-        }));
-    }
 }

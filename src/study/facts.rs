@@ -38,6 +38,8 @@ pub(crate) fn facts(study: &Study, designs: usize) -> StudyFacts {
         parameters: study.parameters.iter().map(parameter_facts).collect(),
         measures: study.measures.iter().cloned().chain(cost).collect(),
         ranking: study.ranking.clone(),
+        objectives: study.plan.search().map_or(Vec::new(), |plan| plan.objectives.clone()),
+        least_gain: study.plan.search().and_then(|plan| plan.least_gain),
         checks: study.checks.clone(),
         keep: study.keep,
     }

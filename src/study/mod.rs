@@ -9,18 +9,21 @@
 //! computed in shards on several machines, ends with the same bytes.
 
 mod analysis;
+mod board;
 mod confirm;
 mod designs;
 mod execute;
 mod facts;
+mod front;
 mod production;
+mod propose;
 mod race;
 mod sampling;
 mod score;
 mod search;
 mod store;
 
-pub use execute::{BatchEvent, BatchProgress, BestDesign};
+pub use board::{BatchEvent, BatchProgress, BestDesign, SearchLead};
 pub use store::OnExisting;
 
 use crate::pipeline;
@@ -30,7 +33,8 @@ use crate::study::designs::designs;
 use crate::study::execute::{DesignBatch, execute};
 use crate::study::facts::facts;
 use crate::study::production::production;
-use crate::study::search::{ProposalEnd, search};
+use crate::study::propose::ProposalEnd;
+use crate::study::search::search;
 use crate::study::store::Store;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Shard};
@@ -104,12 +108,12 @@ pub fn run_study(
     let jobs = options.jobs;
     let batch = DesignBatch { study: &study, store: &store, seed: None, jobs, interrupt, watch };
     // A search that runs out of designs ends with fewer.
-    let planned = match (study.plan.search(), &study.ranking) {
-        (Some(plan), Some(ranking)) => match search(&batch, plan, ranking)? {
+    let planned = match study.plan.search() {
+        Some(plan) => match search(&batch, plan)? {
             ProposalEnd::Complete(designs) => designs,
             ProposalEnd::Stopped => planned,
         },
-        (_, _) => {
+        None => {
             execute(&batch, &all, &wanted)?;
             planned
         }
@@ -134,14 +138,15 @@ pub fn run_study(
         return Ok(unfinished(done));
     }
     let mut report = analysed(facts.clone(), records.into_values().collect());
-    if !test_best(&batch, &mut report)? {
+    if !test_found(&batch, &mut report)? {
         write_best_scene(&study, &store, &report)?;
         let open = facts.production_designs.unwrap_or(1);
         return Ok(unfinished([store.records()?.len(), done[1] + open]));
     }
     interrupt.begin(Activity::Computing);
-    let scene = report.best_passing().map(|best| best_scene(&study, &store, best)).transpose()?;
-    let written = finish(&store, &report, (&study.text, scene), interrupt)?;
+    let found = report.found().map(|design| found_scene(&study, &store, design));
+    let scenes = found.collect::<Result<_>>()?;
+    let written = finish(&store, &report, (&study.text, scenes), interrupt)?;
     Ok(FinishedStudy { report: Some(report), written, ..unfinished(done) })
 }
 
@@ -152,12 +157,15 @@ fn designs_of(store: &Store, planned: usize) -> Result<BTreeMap<usize, DesignRec
     Ok(records)
 }
 
-/// Traces the best design of a search again, and scatters it as production does; returns whether it was not interrupted.
-fn test_best(batch: &DesignBatch<'_>, report: &mut StudyReport) -> Result<bool> {
-    let (Some(best), Some(plan)) = (report.best_passing(), batch.study.plan.search()) else {
+/// Traces what a search has found again, and scatters its best design as production does; returns whether it was not interrupted.
+fn test_found(batch: &DesignBatch<'_>, report: &mut StudyReport) -> Result<bool> {
+    let found: Vec<&DesignRecord> = report.found().collect();
+    let (Some(best), Some(plan)) = (found.first(), batch.study.plan.search()) else {
         return Ok(true);
     };
-    let Some(found) = confirmations(batch, best, report.facts.designs)? else { return Ok(false) };
+    let Some(again) = confirmations(batch, &found, report.facts.designs)? else {
+        return Ok(false);
+    };
     let made = batch
         .study
         .production
@@ -168,7 +176,7 @@ fn test_best(batch: &DesignBatch<'_>, report: &mut StudyReport) -> Result<bool> 
         Some(Some(made)) => Some(Box::new(made)),
         None => None,
     };
-    (report.confirmations, report.production) = (found, made);
+    (report.confirmations, report.production) = (again, made);
     Ok(true)
 }
 
@@ -236,7 +244,7 @@ pub fn merge_study(
     let records: Vec<DesignRecord> = whole.records()?.into_values().collect();
     let done = [records.len(), facts.designs];
     let report = analysed(facts.clone(), records);
-    let written = finish(&whole, &report, (&text, None), &Interrupt::default())?;
+    let written = finish(&whole, &report, (&text, Vec::new()), &Interrupt::default())?;
     Ok(FinishedStudy { facts, report: Some(report), written, done, dir })
 }
 
@@ -245,40 +253,43 @@ fn default_dir(name: &str) -> PathBuf {
     Path::new("reports/studies").join(name)
 }
 
-/// Writes the results of a study, with its file and the scene that a search has found.
+/// Writes the results of a study, with its file and the scenes that a search has found.
 fn finish(
     store: &Store,
     report: &StudyReport,
-    (text, scene): (&str, Option<OutputFile>),
+    (text, scenes): (&str, Vec<OutputFile>),
     interrupt: &Interrupt,
 ) -> Result<Written> {
     // Results follow from the records: older ones of the same study may be replaced.
     let folder = Folder::open(store.lock()?, Existing::Replace, None)?;
-    let files = study_files(report, text, scene)?;
+    let files = study_files(report, text, scenes)?;
     interrupt.begin(Activity::Writing);
     folder.write(&files)
 }
 
-/// The scene of a design, ready to run from the folder of the results.
-fn best_scene(study: &Study, store: &Store, best: &DesignRecord) -> Result<OutputFile> {
+/// The scene of a design that a search has found, ready to run from the folder of the results.
+fn found_scene(study: &Study, store: &Store, found: &DesignRecord) -> Result<OutputFile> {
     let settings = study.parameters.iter().filter_map(|parameter| {
-        best.settings.get(&parameter.name).map(|setting| parameter.overrides(setting))
+        found.settings.get(&parameter.name).map(|setting| parameter.overrides(setting))
     });
     let way = Move { from: study.scene.parent().unwrap_or(Path::new("")), to: store.path() };
     let comment = [format!(
         "Found by the study `{}` (digest {}): design {} of the scene `{}`.",
-        study.name, study.hash, best.design, study.base.name
+        study.name, study.hash, found.design, study.base.name
     )];
     let overrides = study.common.with(settings.flatten()).overrides;
     let text = rewritten_scene(&study.base.text, &overrides, way, &comment)?;
-    let name = format!("{}_best.toml", study.base.name);
+    let name = match study.objectives().len() {
+        1 => format!("{}_best.toml", study.base.name),
+        _ => format!("{}_design_{}.toml", study.base.name, found.design),
+    };
     Ok(OutputFile { name, bytes: text.into_bytes() })
 }
 
 /// Writes the scene of the best design of a search that was stopped, if one passes.
 fn write_best_scene(study: &Study, store: &Store, so_far: &StudyReport) -> Result<()> {
     let Some(best) = so_far.best_passing() else { return Ok(()) };
-    let scene = best_scene(study, store, best)?;
+    let scene = found_scene(study, store, best)?;
     let folder = Folder::open(store.lock()?, Existing::Replace, None)?;
     folder.write_beside(&scene.name, &scene.bytes)
 }

@@ -1,6 +1,7 @@
 //! Combinations of choices that race for the designs of a search: in every lap each has as many, and the better half goes on, with those that
 //! equal it (sequential halving: Karnin, Koren & Somekh, ICML (2013) 1238).
 
+use crate::study::score::{DesignStanding, Goal};
 use lumiduct_input::{Domain, Parameter, Setting};
 
 /// A setting for each parameter with choices.
@@ -12,7 +13,7 @@ pub(crate) struct ChoiceSet {
 
 impl ChoiceSet {
     /// All combinations, those of the last parameter next to each other; one without any setting where nothing is to choose.
-    fn all(parameters: &[Parameter]) -> Vec<Self> {
+    pub(crate) fn all(parameters: &[Parameter]) -> Vec<Self> {
         let mut all = vec![Self { settings: Vec::new() }];
         for (place, parameter) in parameters.iter().enumerate() {
             let Domain::Levels(levels) = &parameter.domain else { continue };
@@ -44,9 +45,9 @@ impl ChoiceSet {
 }
 
 /// A design that was measured.
-pub(crate) struct ScoredDesign {
+pub(crate) struct KnownDesign {
     pub(crate) settings: Vec<Setting>,
-    pub(crate) score: f64,
+    pub(crate) standing: DesignStanding,
 }
 
 /// The race.
@@ -81,6 +82,11 @@ impl Race {
         &self.combinations[number]
     }
 
+    /// Whether a lap that has begun is the last.
+    pub(crate) fn is_last_lap(&self) -> bool {
+        self.laps_left == 1
+    }
+
     /// The combinations of the next lap, each with the most designs that it may have had after it, where `used` are designs of all
     /// combinations: laps share what is left equally. `None` at the end.
     pub(crate) fn next_lap(&mut self, used: usize) -> Option<Vec<(usize, usize)>> {
@@ -98,10 +104,10 @@ impl Race {
 
     /// Ends a lap with all designs so far: the half of the combinations with the lowest scores goes on, and any that equal the last
     /// of them. Early designs often do, as where the first steps of all combinations pass and cost the same.
-    pub(crate) fn end_lap(&mut self, known: &[ScoredDesign]) {
+    pub(crate) fn end_lap(&mut self, known: &[KnownDesign]) {
         let best = |number: &usize| {
             let own = known.iter().filter(|own| self.combinations[*number].is_of(&own.settings));
-            own.map(|own| own.score).fold(f64::INFINITY, f64::min)
+            own.map(|own| own.standing.score(&Goal::One(0))).fold(f64::INFINITY, f64::min)
         };
         let mut ranked: Vec<(f64, usize)> =
             self.running.iter().map(|number| (best(number), *number)).collect();
@@ -130,7 +136,8 @@ mod tests {
             for (number, most) in lap {
                 for _ in had[number]..most {
                     let settings = vec![Setting::Number(number as f64)];
-                    known.push(ScoredDesign { settings, score: scores[number] });
+                    let standing = DesignStanding::Fails(scores[number]);
+                    known.push(KnownDesign { settings, standing });
                 }
                 had[number] = had[number].max(most);
             }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod fronts;
 #[path = "../package/mod.rs"]
 mod package;
 mod searches;

@@ -45,7 +45,7 @@ counts = "leaving"
 "#;
 
 /// The longest rod through which half of the light passes.
-const LONGEST: &str = r#"
+pub(crate) const LONGEST: &str = r#"
 lumiduct_study = 1
 title = "Longest rod"
 scene = "dye.toml"
@@ -63,7 +63,7 @@ measure = "exit.efficiency"
 min = 0.5
 "#;
 
-fn longest(text: &str) -> (tempfile::TempDir, PathBuf) {
+pub(crate) fn longest(text: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("dye.toml"), DYE).unwrap();
     let path = folder.path().join("longest.toml");
@@ -241,7 +241,7 @@ fn a_search_finds_the_clearer_of_two_media_and_goes_on_where_it_was_stopped() {
     }
 }
 
-fn expect_refusal(text: &str, words: &str) {
+pub(crate) fn expect_refusal(text: &str, words: &str) {
     let (_folder, path) = longest(text);
     let error = load_study(&path, &StudySettings::default()).unwrap_err().to_string();
     assert!(error.contains(words), "{text}: {error}");

@@ -1,8 +1,10 @@
-//! Methods of searching for a design, on functions with noise: the table of docs/study_format.md.
+//! Methods of searching for a design, on functions with noise: the tables of docs/study_format.md.
 //!
 //! `cargo run --release --manifest-path benches/search/Cargo.toml`. Every function maps shares of ranges, 0 to 1, to a true value
 //! and to margins of checks, which are measured with noise. Printed is the lowest true value among those of the first 40 and of
 //! all 80 designs that truly pass, the median over searches with their own seeds.
+
+mod front;
 
 use basin::{
     BoundedCmaEs, BoxBounds, ConstraintDescription, ConstraintSet, Constraints, CostFunction,
@@ -245,4 +247,6 @@ fn main() {
             METHODS.iter().map(cell).collect::<Vec<_>>().join(" | ")
         );
     }
+    println!();
+    front::print();
 }

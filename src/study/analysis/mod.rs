@@ -3,11 +3,19 @@
 mod combine;
 mod effects;
 mod failures;
+mod gain;
 mod ranking;
 mod sensitivity;
 
+pub(crate) use gain::latest_gain;
+
+use crate::study::front::front;
+use crate::study::score::DesignStanding;
 use combine::{Term, combine};
-use lumiduct_report::study::{Analysis, DesignRecord, Pairing, Sharpness, StudyFacts, StudyReport};
+use lumiduct_input::Domain;
+use lumiduct_report::study::{
+    Analysis, DesignRecord, LatestGain, Pairing, Sharpness, StudyFacts, StudyReport,
+};
 
 /// A study whose designs all have records, with what follows from them.
 pub(crate) fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyReport {
@@ -19,11 +27,50 @@ pub(crate) fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyRe
 fn analysis(facts: &StudyFacts, designs: &[DesignRecord]) -> Analysis {
     Analysis {
         ranked: ranking::ranked(facts, designs),
+        front: front_of(facts, designs),
+        latest_gain: gain_of(facts, designs),
         effects: effects::effects(facts, designs),
         sensitivities: sensitivity::sensitivities(facts, designs),
         failures: failures::failures(facts, designs),
         sharpness: facts.measures.iter().filter_map(|name| sharpness(name, designs)).collect(),
     }
+}
+
+/// The numbers of the designs on the front of a search, the best by the first objective first.
+fn front_of(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<usize> {
+    if facts.objectives.is_empty() {
+        return Vec::new();
+    }
+    let standings =
+        designs.iter().map(|own| (own.design, DesignStanding::of(&facts.objectives, own)));
+    let standings: Vec<(usize, DesignStanding)> = standings.collect();
+    let passing: Vec<(usize, &[f64])> =
+        standings.iter().filter_map(|(number, own)| Some((*number, own.costs()?))).collect();
+    let costs: Vec<&[f64]> = passing.iter().map(|own| own.1).collect();
+    let mut found: Vec<(usize, &[f64])> =
+        front(&costs).into_iter().map(|place| passing[place]).collect();
+    found.sort_by(|one, other| one.1[0].total_cmp(&other.1[0]));
+    found.into_iter().map(|(number, _)| number).collect()
+}
+
+/// What the latest designs of the combination of choices with the best design have gained, if that ends the search.
+fn gain_of(facts: &StudyFacts, designs: &[DesignRecord]) -> Option<LatestGain> {
+    let ranking = facts.ranking.as_ref().filter(|_| facts.least_gain.is_some())?;
+    let best = ranking::ranked(facts, designs).first()?.design;
+    let best = designs.iter().find(|own| own.design == best)?;
+    let (mut ranges, mut choices) = (0, Vec::new());
+    for own in &facts.parameters {
+        match own.domain {
+            Domain::Uniform { .. } => ranges += 1,
+            Domain::Levels(_) => choices.push(&own.name),
+            Domain::Normal { .. } | Domain::Listed | Domain::AsInScene => {}
+        }
+    }
+    let is_own = |design: &&DesignRecord| {
+        choices.iter().all(|name| design.settings.get(*name) == best.settings.get(*name))
+    };
+    let designs: Vec<&DesignRecord> = designs.iter().filter(is_own).collect();
+    latest_gain(ranking, ranges, &designs)
 }
 
 /// How much sharper the difference of neighbouring designs is than if they were independent.
@@ -87,6 +134,8 @@ pub(crate) mod testing {
             parameters: vec![parameter("a"), parameter("b")],
             measures: vec!["exit.flux".into()],
             ranking: Some(Ranking { measure: "exit.flux".into(), best: Best::Highest }),
+            objectives: Vec::new(),
+            least_gain: None,
             checks: Vec::new(),
             keep: Keep::Records,
         }

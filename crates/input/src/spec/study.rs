@@ -15,6 +15,9 @@ pub(crate) const MOST_DESIGNS: usize = 1 << 16;
 /// Most parameters of a study: within the dimensions of the Sobol sequence.
 pub(crate) const MOST_PARAMETERS: usize = 200;
 
+/// Most objectives of a search: a front of more can hardly be read.
+pub(crate) const MOST_OBJECTIVES: usize = 3;
+
 /// A study: a scene, the parameters that vary, the measures to record and the criterion for a good design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Lumiduct study")]
@@ -191,7 +194,7 @@ pub(crate) enum PlanSpec {
 }
 
 /// A search for the best design: Nelder and Mead's simplex within the ranges, restarted where it has converged. It begins at the
-/// values of the scene; combinations of `choices` race each other. What is best is set by `ranking` or by `cost`.
+/// values of the scene; combinations of `choices` race each other. What is best is set by `ranking`, by `cost` or by `objectives`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SearchPlan {
     /// Most designs to trace.
@@ -204,9 +207,26 @@ pub struct SearchPlan {
     /// It is recorded as the measure `cost`.
     #[serde(default)]
     pub cost: IndexMap<String, f64>,
+    /// Two or three measures in place of `ranking`, `cost` among them if it is given: the search finds a front of designs, none of
+    /// which is beaten in all objectives.
+    #[serde(default)]
+    #[schemars(length(max = MOST_OBJECTIVES))]
+    pub objectives: Vec<Ranking>,
+    /// The search ends early when its latest designs, 10 for each range, have made the best design better by no more than this, in the unit of
+    /// the measure that decides, or by no more than the error of this gain. Omitted: it traces all `designs`.
+    #[schemars(range(min = 0.0))]
+    pub least_gain: Option<f64>,
     /// Number of simulated parts around the best design, where a parameter has a `tolerance`. Omitted: 100.
     #[schemars(range(min = 2, max = MOST_DESIGNS))]
     pub samples: Option<u32>,
+}
+
+impl SearchPlan {
+    /// Least number of directions in which a front is searched: toward each objective, and between each two.
+    pub fn least_directions(&self) -> usize {
+        let count = self.objectives.len();
+        count * (count + 1) / 2
+    }
 }
 
 /// The designs of a table.

@@ -130,6 +130,16 @@ pub struct Study {
     pub warnings: Vec<Diagnostic>,
 }
 
+impl Study {
+    /// What decides between designs: several measures for a front, else that of the ranking, if there is one.
+    pub fn objectives(&self) -> &[Ranking] {
+        match self.plan.search() {
+            Some(plan) if !plan.objectives.is_empty() => &plan.objectives,
+            Some(_) | None => self.ranking.as_slice(),
+        }
+    }
+}
+
 /// Loads a study file, its scene and everything they refer to.
 ///
 /// # Errors
@@ -168,6 +178,9 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
     let cost = plan.search().and_then(|own| Cost::new(&own.cost, &parameters));
+    let is_front = plan.search().is_some_and(|own| !own.objectives.is_empty());
+    let of_cost = cost.as_ref().filter(|_| !is_front).map(|_| Cost::ranking());
+    let ranking = of_cost.or(spec.ranking);
     let is_scattered = parameters.iter().any(|own| own.tolerance.is_some());
     let production = plan.search().filter(|_| is_scattered);
     let production = production
@@ -183,7 +196,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
         plan,
         production,
         measures: spec.measures,
-        ranking: cost.as_ref().map(|_| Cost::ranking()).or(spec.ranking),
+        ranking,
         cost,
         checks: spec.check.clone(),
         keep: spec.keep,

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use crate::problems::{Problems, name_hint};
-use crate::spec::study::{ParameterSpec, PlanSpec, SearchPlan, StudySpec, Tolerance};
+use crate::spec::study::{ParameterSpec, PlanSpec, Ranking, SearchPlan, StudySpec, Tolerance};
 use crate::study::cost::Cost;
 use crate::study::parameters::{Domain, Parameter};
 
@@ -10,29 +10,92 @@ use crate::study::parameters::{Domain, Parameter};
 pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
     let PlanSpec::Search(plan) = &spec.plan else { return };
     let key = Key::of(&["plan", "search"]);
-    match (&spec.ranking, plan.cost.is_empty()) {
-        (Some(_), true) | (None, false) => {}
-        (None, true) => {
+    let is_costed = !plan.cost.is_empty();
+    match (&spec.ranking, is_costed, plan.objectives.is_empty()) {
+        (Some(_), false, true) | (None, true, true) | (None, _, false) => {}
+        (None, false, true) => {
             problems
                 .error(&key, "a search needs to know which design is the best")
-                .hint("add `[ranking]` with a `measure`, or `cost` with factors of parameters");
+                .hint("add `[ranking]` with a `measure`, `cost` with factors of parameters, or `objectives`");
         }
-        (Some(_), false) => {
+        (Some(_), true, true) => {
             problems
                 .error(&key.field("cost"), "`ranking` already says which design is the best")
                 .hint("leave out `cost`, or replace `[ranking]` by a `[[check]]` on its measure");
         }
+        (Some(_), _, false) => {
+            problems
+                .error(&key.field("objectives"), "`ranking` already says which design is the best")
+                .hint("leave out `[ranking]`, or list its measure among the objectives");
+        }
     }
-    for (name, factor) in
-        plan.cost.iter().filter(|(_, factor)| **factor == 0.0 || !factor.is_finite())
-    {
-        let message = format!("the factor {factor} leaves nothing to compare");
-        problems.error(&key.field("cost").field(name), message).hint("leave it out");
-    }
+    check_objectives(spec, plan, problems);
+    check_cost(spec, plan, problems);
     if plan.samples.is_some() && spec.parameters.values().all(|own| own.tolerance.is_none()) {
         problems
             .error(&key.field("samples"), "no parameter has a `tolerance`, so nothing scatters")
             .hint("give one to the parameters that production scatters, or leave it out");
+    }
+    let ranges = spec.parameters.values().filter(|own| own.range.is_some()).count();
+    let is_complete = |own: &ParameterSpec| own.tolerance.is_some() || own.choices.is_some();
+    if !spec.parameters.is_empty() && ranges == 0 && spec.parameters.values().all(is_complete) {
+        let key = Key::of(&["parameters"]);
+        problems
+            .error(&key, "there is nothing to search: no parameter has a `range`")
+            .hint("the plan `grid` tries every choice");
+    }
+    check_designs(spec, (plan, ranges), problems);
+}
+
+/// Notes objectives that are none, or that contradict other keys.
+fn check_objectives(spec: &StudySpec, plan: &SearchPlan, problems: &mut Problems) {
+    let key = Key::of(&["plan", "search", "objectives"]);
+    let (objectives, is_costed) = (&plan.objectives, !plan.cost.is_empty());
+    if objectives.is_empty() {
+        return;
+    }
+    if objectives.len() == 1 {
+        problems.error(&key, "a front has two or more").hint("use `[ranking]` for a single one");
+    }
+    for (place, Ranking { measure, .. }) in objectives.iter().enumerate() {
+        let key = key.index(place).field("measure");
+        let names = spec.measures.iter().map(String::as_str);
+        let names = names.chain(is_costed.then_some(Cost::NAME));
+        if objectives[..place].iter().any(|own| own.measure == *measure) {
+            problems.error(&key, format!("`{measure}` is listed twice")).hint("leave one out");
+        } else if names.clone().all(|own| own != measure) {
+            let message = format!("`{measure}` is not one of `measures`");
+            problems.error(&key, message).hint(name_hint(measure, names));
+        }
+    }
+    if is_costed && objectives.iter().all(|own| own.measure != Cost::NAME) {
+        problems
+            .error(&Key::of(&["plan", "search", "cost"]), "it is none of the `objectives`")
+            .hint("list it there as `{ measure = \"cost\", best = \"lowest\" }`, or leave it out");
+    }
+    if plan.least_gain.is_some() {
+        problems
+            .error(
+                &Key::of(&["plan", "search", "least_gain"]),
+                "a front has no best design to gain",
+            )
+            .hint("leave it out");
+    }
+    for (name, _) in spec.parameters.iter().filter(|(_, own)| own.tolerance.is_some()) {
+        problems
+            .error(&Key::of(&["parameters", name, "tolerance"]), "a front has no best design to scatter")
+            .hint("choose a design of the front first, then search about it, or use the plan `tolerance`");
+    }
+}
+
+/// Notes costs that leave nothing to compare.
+fn check_cost(spec: &StudySpec, plan: &SearchPlan, problems: &mut Problems) {
+    let key = Key::of(&["plan", "search", "cost"]);
+    for (name, factor) in
+        plan.cost.iter().filter(|(_, factor)| **factor == 0.0 || !factor.is_finite())
+    {
+        let message = format!("the factor {factor} leaves nothing to compare");
+        problems.error(&key.field(name), message).hint("leave it out");
     }
     if !plan.cost.is_empty() && spec.measures.iter().any(|name| name == Cost::NAME) {
         problems
@@ -40,7 +103,7 @@ pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
             .hint("leave it out");
     }
     for name in plan.cost.keys() {
-        let (key, names) = (key.field("cost").field(name), spec.parameters.keys());
+        let (key, names) = (key.field(name), spec.parameters.keys());
         match spec.parameters.get(name) {
             Some(own) if own.choices.is_some() => {
                 problems.error(&key, "its choices are no numbers").hint("leave it out");
@@ -55,28 +118,25 @@ pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
             }
         }
     }
-    let ranges = spec.parameters.values().filter(|own| own.range.is_some()).count();
-    let is_complete = |own: &ParameterSpec| own.tolerance.is_some() || own.choices.is_some();
-    if !spec.parameters.is_empty() && ranges == 0 && spec.parameters.values().all(is_complete) {
-        let key = Key::of(&["parameters"]);
-        problems
-            .error(&key, "there is nothing to search: no parameter has a `range`")
-            .hint("the plan `grid` tries every choice");
-    }
-    check_race(spec, (plan, ranges), problems);
 }
 
-/// Notes a search with too few designs to compare its choices.
-fn check_race(spec: &StudySpec, (plan, ranges): (&SearchPlan, usize), problems: &mut Problems) {
+/// Notes a search with too few designs to compare its choices, or for a front.
+fn check_designs(spec: &StudySpec, (plan, ranges): (&SearchPlan, usize), problems: &mut Problems) {
     let counts = spec.parameters.values().filter_map(|own| Some(own.choices.as_ref()?.len()));
     let combinations = counts.fold(1_usize, usize::saturating_mul);
+    let directions = if plan.objectives.is_empty() { 1 } else { plan.least_directions() };
     // A simplex of each, and a design more.
-    let least = combinations.saturating_mul(ranges + 2);
-    if combinations > 1 && least > plan.designs as usize {
-        let message = format!("too few for {combinations} combinations of choices");
+    let least = combinations.saturating_mul(directions).saturating_mul(ranges + 2);
+    if (combinations > 1 || directions > 1) && least > plan.designs as usize {
+        let what = match (combinations, directions) {
+            (1, _) => "a front".to_owned(),
+            (_, 1) => format!("{combinations} combinations of choices"),
+            (_, _) => format!("a front with {combinations} combinations of choices"),
+        };
+        let fewer = if combinations > 1 { ", or fewer choices" } else { "" };
         problems
-            .error(&Key::of(&["plan", "search", "designs"]), message)
-            .hint(format!("give {least} or more, or fewer choices"));
+            .error(&Key::of(&["plan", "search", "designs"]), format!("too few for {what}"))
+            .hint(format!("give {least} or more{fewer}"));
     }
 }
 

@@ -30,6 +30,12 @@ pub enum Pairing {
 pub struct Analysis {
     /// All designs that were traced, the best first; empty without a ranking.
     pub ranked: Vec<Ranked>,
+    /// Numbers of the designs on the front of a search with several objectives, the best by the first of them first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub front: Vec<usize>,
+    /// What the latest designs of a search have gained, if that ends it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latest_gain: Option<LatestGain>,
     /// Main effects of the parameters on the measures.
     pub effects: Vec<Effect>,
     /// How much of the variance of a measure comes from each parameter.
@@ -38,6 +44,15 @@ pub struct Analysis {
     pub failures: Vec<FailureShare>,
     /// How much sharper differences between designs are than with independent random numbers.
     pub sharpness: Vec<Sharpness>,
+}
+
+/// How much better the latest designs of a search have made the best.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LatestGain {
+    /// How many designs the latest are.
+    pub designs: usize,
+    /// The gain, in the unit of the measure.
+    pub gain: ValueWithError,
 }
 
 /// The rank of a design.

@@ -67,5 +67,6 @@ pub(super) fn words(own: &Confirmation) -> String {
         (DesignOutcome::Done(_), Some(CheckOutcome::Passed)) => "all checks pass".to_owned(),
         (DesignOutcome::Done(_), Some(worst)) => format!("a check is {}", outcome_word(worst)),
     };
-    format!("traced again with seed {} by `{}`: {found}", own.seed, own.estimator)
+    let which = own.design.map_or(String::new(), |number| format!("design {number} "));
+    format!("{which}traced again with seed {} by `{}`: {found}", own.seed, own.estimator)
 }

@@ -4,10 +4,12 @@ use crate::page::{Block, PagePart, table};
 use crate::study::choices::best_of_choices;
 use crate::study::confirmation::{standing, traced_again};
 use crate::study::edge::edge_remark;
+use crate::study::front::{front_part, front_words};
 use crate::study::sampled::{expected_failures, failures, produced, sensitivities};
 use crate::study::settings::{domain_words, setting_word, settings, settings_words};
 use crate::study::{
-    DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, StudyReport, ValueWithError,
+    DesignOutcome, DesignRecord, LatestGain, Pairing, ParameterFacts, PlanFacts, StudyReport,
+    ValueWithError,
 };
 use crate::words::{measured, outcome_word};
 use lumiduct_base::number::{format_value, format_with_error};
@@ -24,6 +26,7 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
     let mut before: Vec<PagePart> = [
         failures(report),
         best_of_choices(report),
+        front_part(report),
         ranking(report),
         traced_again(report),
         produced(report),
@@ -75,7 +78,8 @@ pub(super) fn verdict(report: &StudyReport) -> String {
             text += &expected_failures(report);
         }
         None if report.facts.plan.is_search() => {
-            text += "; no design passes, so the search found none";
+            let none = "; no design passes, so the search found none";
+            text += &front_words(report).unwrap_or_else(|| none.to_owned());
         }
         None => {}
     }
@@ -233,7 +237,11 @@ fn run(report: &StudyReport) -> PagePart {
         PlanFacts::Sobol(seed) => format!("scrambled Sobol sequence, seed {seed}"),
         PlanFacts::Tolerance(seed) => format!("independent random samples, seed {seed}"),
         PlanFacts::Search(seed) => {
-            format!("search by Nelder and Mead's simplex with restarts, seed {seed}")
+            let front = match facts.objectives.is_empty() {
+                true => "",
+                false => " for a front, in several directions",
+            };
+            format!("search{front} by Nelder and Mead's simplex with restarts, seed {seed}")
         }
     };
     let mut lines = vec![
@@ -245,6 +253,7 @@ fn run(report: &StudyReport) -> PagePart {
         ),
         format!("requested for each design: {}", facts.asked),
     ];
+    lines.extend(gain_words(report));
     for own in &report.analysis.sharpness {
         lines.push(format!(
             "differences of {} between neighbouring designs have errors {} times smaller than with \
@@ -258,4 +267,23 @@ fn run(report: &StudyReport) -> PagePart {
         lines.push(format!("set for all designs: {}", facts.overrides.join(", ")));
     }
     PagePart::new("Run", vec![Block::List { items: lines }])
+}
+
+/// What the latest designs have gained, if that ends a search.
+fn gain_words(report: &StudyReport) -> Option<String> {
+    let least = report.facts.least_gain?;
+    let Some(LatestGain { designs, gain }) = report.analysis.latest_gain else {
+        return Some("too few designs to judge whether the search gains anything".to_owned());
+    };
+    let gained = match gain.std_error > 0.0 {
+        true => format_with_error(gain.value, gain.std_error),
+        false => format_value(gain.value),
+    };
+    let limit = format!("`least_gain` is {}", format_value(least));
+    Some(match gain.value <= least.max(gain.std_error) {
+        true => format!(
+            "ended because its latest {designs} designs gained no more than {gained} ({limit})"
+        ),
+        false => format!("its latest {designs} designs still gained {gained} ({limit})"),
+    })
 }

@@ -1,14 +1,14 @@
 //! The pictures of a study and their contents.
 
-use crate::OutputFile;
 use crate::png::{
     AxisScale, Bar, BarChart, ErrorForm, LinePlot, Look, PlotSeries, ScatterColumn, ScatterMatrix,
-    SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
+    SeriesForm, SeriesPoint,
 };
 use crate::study::edge::numbers_of;
+use crate::study::figure::{Figure, StudyDrawing, measure_label};
+use crate::study::front::front_figures;
 use crate::study::settings::setting_word;
 use crate::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
-use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::CheckOutcome;
 use lumiduct_input::Best;
@@ -17,26 +17,6 @@ use lumiduct_input::Best;
 const MOST_CURVES: usize = 12;
 /// Approximate bins of a histogram over the square root of the number of designs.
 const BINS_PER_ROOT: f64 = 1.2;
-
-/// A picture of a study.
-pub(super) struct Figure {
-    /// Its file.
-    pub(super) file: String,
-    /// What it shows, in words.
-    pub(super) label: String,
-    /// Its contents.
-    pub(super) drawing: StudyDrawing,
-}
-
-/// Contents of a picture.
-pub(super) enum StudyDrawing {
-    /// Curves; the unit is that of their values.
-    Curves(LinePlot, String),
-    /// Bars.
-    Bars(BarChart),
-    /// Everything against everything.
-    Scatter(ScatterMatrix),
-}
 
 /// All pictures of a study.
 pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
@@ -59,6 +39,7 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
         }
     }
     figures.extend(history(report));
+    figures.extend(front_figures(report));
     figures.extend(report.production.iter().flat_map(|made| production(made)));
     for effect in &report.analysis.effects {
         figures.push(Figure {
@@ -75,26 +56,6 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
         });
     }
     figures
-}
-
-impl Figure {
-    /// The picture as a file.
-    pub(super) fn file(&self) -> Result<OutputFile> {
-        let bytes = match &self.drawing {
-            StudyDrawing::Curves(plot, _) => line_plot(plot)?,
-            StudyDrawing::Bars(chart) => bar_chart(chart)?,
-            StudyDrawing::Scatter(matrix) => scatter_matrix(matrix)?,
-        };
-        Ok(OutputFile { name: self.file.clone(), bytes })
-    }
-}
-
-/// The label of a measure with its unit.
-pub(super) fn measure_label(report: &StudyReport, measure: &str) -> String {
-    match report.unit(measure) {
-        "1" => measure.to_owned(),
-        unit => format!("{measure} in {unit}"),
-    }
 }
 
 /// A measure over the parameter with the most levels, a curve for each setting of all others; for

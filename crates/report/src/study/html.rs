@@ -9,7 +9,7 @@ use crate::png::{
 };
 use crate::study::StudyReport;
 use crate::study::contents::{parts, verdict};
-use crate::study::figures::{Figure, StudyDrawing};
+use crate::study::figure::{Figure, StudyDrawing};
 use lumiduct_base::error::Result;
 
 /// Tables with more rows than this are folded away.

@@ -5,7 +5,9 @@ mod choices;
 mod confirmation;
 mod contents;
 mod edge;
+mod figure;
 mod figures;
+mod front;
 mod html;
 mod page;
 mod record;
@@ -15,8 +17,8 @@ mod tables;
 mod terminal;
 
 pub use analysis::{
-    Analysis, Effect, EffectPoint, FailureShare, Pairing, Ranked, Sensitivity, SensitivityIndex,
-    SensitivityMethod, Sharpness, ValueWithError,
+    Analysis, Effect, EffectPoint, FailureShare, LatestGain, Pairing, Ranked, Sensitivity,
+    SensitivityIndex, SensitivityMethod, Sharpness, ValueWithError,
 };
 pub use record::{
     Confirmation, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT,
@@ -38,7 +40,7 @@ pub(crate) const SUMMARY: &str = "study.json";
 /// Version of the layout of that file.
 pub(crate) const SUMMARY_FORMAT: u32 = 1;
 
-/// All files of a study but its manifest and its records, in the reproducible order; `scene` is that of the best design of a search.
+/// All files of a study but its manifest and its records, in the reproducible order; `scenes` are those that a search has found.
 ///
 /// # Errors
 ///
@@ -46,7 +48,7 @@ pub(crate) const SUMMARY_FORMAT: u32 = 1;
 pub fn study_files(
     report: &StudyReport,
     study_text: &str,
-    scene: Option<OutputFile>,
+    scenes: Vec<OutputFile>,
 ) -> Result<Vec<OutputFile>> {
     let mut files = tables::files(report)?;
     let figures = figures::figures(report);
@@ -54,7 +56,7 @@ pub fn study_files(
         files.push(figure.file()?);
     }
     files.push(OutputFile::text(format!("{}.toml", report.facts.name), study_text.to_owned()));
-    files.extend(scene);
+    files.extend(scenes);
     let logo = report.facts.logo.clone();
     files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
     files.push(OutputFile::text("study.md", page::page(report, &figures)));

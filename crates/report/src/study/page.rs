@@ -4,7 +4,7 @@ use crate::markdown::{add, masthead};
 use crate::page::PagePart;
 use crate::study::StudyReport;
 use crate::study::contents::{parts, verdict};
-use crate::study::figures::Figure;
+use crate::study::figure::Figure;
 use lumiduct_base::text::markdown_page;
 use std::fmt::Write;
 

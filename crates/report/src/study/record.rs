@@ -58,6 +58,12 @@ pub struct StudyFacts {
     pub measures: Vec<String>,
     /// What the best design is.
     pub ranking: Option<Ranking>,
+    /// The measures of a search for a front.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objectives: Vec<Ranking>,
+    /// The gain by its latest designs at which a search ends early.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_gain: Option<f64>,
     /// What every design has to meet.
     pub checks: Vec<Check>,
     /// What is kept of each design.
@@ -240,9 +246,12 @@ impl DesignRecord {
     }
 }
 
-/// The best design of a search, traced again.
+/// The best design of a search, or one of a front, traced again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Confirmation {
+    /// The number of a design of a front.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub design: Option<usize>,
     /// Seed of the random numbers of light.
     pub seed: u64,
     /// The requested estimator of flux.
@@ -267,7 +276,7 @@ pub struct StudyReport {
     pub designs: Vec<DesignRecord>,
     /// Their joint analysis.
     pub analysis: Analysis,
-    /// The best design of a search, traced again.
+    /// What a search has found, traced again.
     pub confirmations: Vec<Confirmation>,
     /// That best design as production scatters it, as a study of its own.
     pub production: Option<Box<StudyReport>>,
@@ -292,6 +301,11 @@ impl StudyReport {
         best.passes().then_some(best)
     }
 
+    /// What a search has found: the best design that passes every check, or those of the front.
+    pub fn found(&self) -> impl Iterator<Item = &DesignRecord> {
+        self.best_passing().into_iter().chain(self.front())
+    }
+
     /// The design of a number.
     pub(crate) fn design(&self, number: usize) -> Option<&DesignRecord> {
         self.designs.iter().find(|design| design.design == number)
@@ -300,7 +314,7 @@ impl StudyReport {
     /// Whether every design is as requested or, of a search, one is found and not refuted.
     pub fn is_good(&self) -> bool {
         if self.facts.plan.is_search() {
-            self.best_passing().is_some() && !self.confirmations.iter().any(Confirmation::refutes)
+            self.found().next().is_some() && !self.confirmations.iter().any(Confirmation::refutes)
         } else {
             self.counts().is_clean()
         }

@@ -2,7 +2,7 @@
 
 use crate::page::{Block, PagePart, table};
 use crate::study::confirmation::of_best;
-use crate::study::figures::measure_label;
+use crate::study::figure::measure_label;
 use crate::study::settings::domain_words;
 use crate::study::{
     DesignOutcome, ParameterFacts, Sensitivity, SensitivityIndex, SensitivityMethod, StudyReport,

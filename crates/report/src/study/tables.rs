@@ -50,7 +50,9 @@ fn row(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
         let verdict = result.and_then(|result| result.checks.get(place));
         cells.push(verdict.map_or("", |own| outcome_word(own.verdict.outcome)).to_owned());
     }
-    let rank = report.analysis.ranked.iter().position(|own| own.design == design.design);
+    let analysis = &report.analysis;
+    let mut order = analysis.ranked.iter().map(|own| own.design).chain(analysis.front.clone());
+    let rank = order.position(|number| number == design.design);
     cells.push(rank.map_or(String::new(), |rank| (rank + 1).to_string()));
     cells.push(result.map_or(String::new(), |result| result.paths.to_string()));
     cells.push(result.map_or("", |result| result.stopped.as_str()).to_owned());

@@ -9,29 +9,34 @@ use lumiduct_base::number::format_percent;
 
 /// Designs that are named one by one.
 const DESIGNS_SHOWN: usize = 5;
+/// Designs of a front that are named.
+const FRONT_SHOWN: usize = 20;
 
 /// A few lines: how many designs pass, which are the best, what failed.
 pub fn terminal(report: &StudyReport) -> String {
     let counts = report.counts();
     let mut text = format!("{}\n{}\n", report.facts.title, verdict(report));
-    let ranked = &report.analysis.ranked;
-    let shown: Vec<usize> = match ranked.is_empty() {
-        true => report.designs.iter().map(|design| design.design).collect(),
-        false => ranked.iter().map(|own| own.design).collect(),
+    let (ranked, front) = (&report.analysis.ranked, &report.analysis.front);
+    let (shown, most, rest): (Vec<usize>, _, _) = match (ranked.is_empty(), front.is_empty()) {
+        (_, false) => (front.clone(), FRONT_SHOWN, "more on the front"),
+        (false, true) => {
+            let numbers = ranked.iter().map(|own| own.design).collect();
+            (numbers, DESIGNS_SHOWN, "designs ranked lower")
+        }
+        (true, true) => {
+            (report.designs.iter().map(|own| own.design).collect(), DESIGNS_SHOWN, "more")
+        }
     };
-    let (measure, _) = report.leading();
-    for number in shown.iter().take(DESIGNS_SHOWN) {
-        let design = report.designs.iter().find(|design| design.design == *number);
-        if let Some((design, found)) = design.and_then(|own| Some((own, own.measure(measure)?))) {
-            text +=
-                &format!("  design {number}: {measure} {found} ({})\n", settings(report, design));
+    for design in shown.iter().take(most).filter_map(|number| report.design(*number)) {
+        if let Some(values) = leading_values(report, design) {
+            let settings = settings(report, design);
+            text += &format!("  design {}: {values} ({settings})\n", design.design);
         }
     }
-    if shown.len() > DESIGNS_SHOWN {
-        let words = if ranked.is_empty() { "more" } else { "designs ranked lower" };
-        text += &format!("  and {} {words}\n", shown.len() - DESIGNS_SHOWN);
+    if shown.len() > most {
+        text += &format!("  and {} {rest}\n", shown.len() - most);
     }
-    for own in &report.confirmations {
+    for own in report.confirmations.iter().filter(|own| own.design.is_none() || own.refutes()) {
         text += &format!("  {}\n", words(own));
     }
     let made = report.production.iter().flat_map(|made| &made.analysis.failures);
@@ -61,6 +66,15 @@ pub fn terminal(report: &StudyReport) -> String {
         text += &format!("  and {} more give none\n", counts.broken - DESIGNS_SHOWN);
     }
     text
+}
+
+/// The measures of a design that decide; `None` if one is missing.
+fn leading_values(report: &StudyReport, design: &DesignRecord) -> Option<String> {
+    let objectives = report.facts.objectives.iter().map(|own| own.measure.as_str());
+    let leading = report.facts.objectives.is_empty().then(|| report.leading().0);
+    let value = |name: &str| Some(format!("{name} {}", design.measure(name)?));
+    let values: Option<Vec<String>> = objectives.chain(leading).map(value).collect();
+    Some(values?.join(", "))
 }
 
 fn settings(report: &StudyReport, design: &DesignRecord) -> String {

@@ -154,6 +154,18 @@ fn a_report_and_a_check_say_alike_what_was_simulated() {
 }
 
 #[test]
+fn a_check_counts_the_triangles_and_copies_of_a_mesh() {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+    for (scene, counts) in [
+        ("engraved_plate", "unit m, 2560000 triangles, 2000 copies;"),
+        ("bent_rod_cad", "unit m, 6266 triangles;"),
+    ] {
+        let said = Place::new().good(&format!("check {scenes}/{scene}.toml"));
+        assert!(said.contains(counts), "{said}");
+    }
+}
+
+#[test]
 fn a_scene_of_thousands_of_solids_is_summarised() {
     let place = Place::new();
     let box_at = |i: usize| {

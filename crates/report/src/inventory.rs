@@ -8,8 +8,9 @@ use glam::DVec3;
 use lumiduct_base::number::format_value;
 use lumiduct_core::colour::VISIBLE;
 use lumiduct_core::optics::{CoefficientLaw, IndexLaw, Medium, REFERENCE_WAVELENGTH};
+use lumiduct_core::scene::mesh::MeshBody;
 use lumiduct_core::scene::{
-    Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
+    Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, SolidId, Source, SunAngles,
 };
 use lumiduct_input::{Outline, library};
 use std::collections::BTreeSet;
@@ -192,12 +193,13 @@ fn listed(name: &str) -> Option<String> {
 }
 
 fn solids(scene: &Scene, outline: &Outline) -> Listing {
-    let rows = scene.solids.iter().map(|solid| {
+    let rows = scene.solids.iter().enumerate().map(|(index, solid)| {
         let size = solid.bounds.max - solid.bounds.min;
         let priority = if solid.priority == 0 { String::new() } else { solid.priority.to_string() };
         [
             solid.name.clone(),
-            outline.entry("solids", &solid.name, &["medium", "at", "priority"]),
+            outline.entry("solids", &solid.name, &["medium", "at", "priority"])
+                + &triangles(scene, SolidId::new(index)),
             place(outline, "solids", &solid.name),
             scene.media[solid.medium.index()].name().to_owned(),
             priority,
@@ -207,6 +209,17 @@ fn solids(scene: &Scene, outline: &Outline) -> Listing {
     });
     let head = ["solid", "shape", "place", "medium", "priority", "volume", "box around it"];
     Listing::new("solid", head, scene.solids.len(), rows)
+}
+
+/// How many triangles a solid has, and how many of its bodies are copies; nothing for one without any.
+fn triangles(scene: &Scene, solid: SolidId) -> String {
+    let own = || scene.mesh_bodies().filter(|body| body.solid == solid);
+    let count: usize = own().map(MeshBody::triangle_count).sum();
+    match (count, own().filter(|body| body.is_copy()).count()) {
+        (0, _) => String::new(),
+        (count, 0) => format!(", {count} triangles"),
+        (count, copies) => format!(", {count} triangles, {copies} copies"),
+    }
 }
 
 fn sheets(scene: &Scene, outline: &Outline) -> Listing {

@@ -132,7 +132,7 @@ impl MeshBody {
     }
 
     /// Whether it is a copy.
-    pub(crate) fn is_copy(&self) -> bool {
+    pub fn is_copy(&self) -> bool {
         self.place.is_some()
     }
 

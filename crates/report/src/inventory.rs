@@ -4,11 +4,11 @@
 //! One description for `check`, `report.md` and the page. The content of the scene file is given in
 //! its own words; areas, volumes and etendues are computed from the scene.
 
+use crate::mesh::triangles_of;
 use glam::DVec3;
 use lumiduct_base::number::format_value;
 use lumiduct_core::colour::VISIBLE;
 use lumiduct_core::optics::{CoefficientLaw, IndexLaw, Medium, REFERENCE_WAVELENGTH};
-use lumiduct_core::scene::mesh::MeshBody;
 use lumiduct_core::scene::{
     Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, SolidId, Source, SunAngles,
 };
@@ -199,7 +199,7 @@ fn solids(scene: &Scene, outline: &Outline) -> Listing {
         [
             solid.name.clone(),
             outline.entry("solids", &solid.name, &["medium", "at", "priority"])
-                + &triangles(scene, SolidId::new(index)),
+                + &triangles_of(scene, SolidId::new(index)),
             place(outline, "solids", &solid.name),
             scene.media[solid.medium.index()].name().to_owned(),
             priority,
@@ -209,17 +209,6 @@ fn solids(scene: &Scene, outline: &Outline) -> Listing {
     });
     let head = ["solid", "shape", "place", "medium", "priority", "volume", "box around it"];
     Listing::new("solid", head, scene.solids.len(), rows)
-}
-
-/// How many triangles a solid has, and how many of its bodies are copies; nothing for one without any.
-fn triangles(scene: &Scene, solid: SolidId) -> String {
-    let own = || scene.mesh_bodies().filter(|body| body.solid == solid);
-    let count: usize = own().map(MeshBody::triangle_count).sum();
-    match (count, own().filter(|body| body.is_copy()).count()) {
-        (0, _) => String::new(),
-        (count, 0) => format!(", {count} triangles"),
-        (count, copies) => format!(", {count} triangles, {copies} copies"),
-    }
 }
 
 fn sheets(scene: &Scene, outline: &Outline) -> Listing {

@@ -1,8 +1,10 @@
 //! The health of a mesh, as a page: what prevents its use as a solid, and how its facets affect
-//! light.
+//! light; and how many triangles the solids of a scene have.
 
-use lumiduct_base::mesh::{CopiedBody, Defects, FaceSize, MeshAssembly, MeshHealth};
+use lumiduct_base::mesh::{CopiedBody, Defects, FaceSize, MeshAssembly, MeshHealth, WhyJoined};
 use lumiduct_base::number::format_value;
+use lumiduct_core::scene::mesh::MeshBody;
+use lumiduct_core::scene::{Scene, SolidId};
 use std::fmt::Write;
 
 /// Bounces for which the drift of a faceted wall is reported.
@@ -62,6 +64,9 @@ pub fn mesh_report(name: &str, mesh: &MeshAssembly, health: &MeshHealth) -> Stri
             body.faces.join("`, `")
         );
     }
+    for (why, nodes) in &mesh.joined {
+        _ = writeln!(text, "\n{nodes} of the copies do not share triangles: {}", why_joined(*why));
+    }
     text.push_str("\nmust be none\n");
     defects(&mut text, "open edges", &health.open_edges);
     defects(&mut text, "edges of more than two triangles", &health.crowded_edges);
@@ -74,6 +79,28 @@ pub fn mesh_report(name: &str, mesh: &MeshAssembly, health: &MeshHealth) -> Stri
     facets(&mut text, health);
     cost(&mut text, mesh);
     text
+}
+
+/// How many triangles a solid has, and how many of its bodies are copies; nothing for one without any.
+pub(crate) fn triangles_of(scene: &Scene, solid: SolidId) -> String {
+    let own = || scene.mesh_bodies().filter(|body| body.solid == solid);
+    let count: usize = own().map(MeshBody::triangle_count).sum();
+    match (count, own().filter(|body| body.is_copy()).count()) {
+        (0, _) => String::new(),
+        (count, 0) => format!(", {count} triangles"),
+        (count, copies) => format!(", {count} triangles, {copies} copies"),
+    }
+}
+
+/// Why copies do not share their triangles, in words.
+fn why_joined(why: WhyJoined) -> &'static str {
+    match why {
+        WhyJoined::Few => "they are few, and one tree over all is searched faster",
+        WhyJoined::Touching => "by their boxes they may touch another part",
+        WhyJoined::Open => "their mesh is not closed by itself",
+        WhyJoined::Distorted => "they stretch or shear their mesh",
+        WhyJoined::Tiny => "they are far smaller than another copy",
+    }
 }
 
 /// What tracing it takes.
@@ -137,6 +164,25 @@ fn facets(text: &mut String, health: &MeshHealth) {
                 };
             }
             text.push_str("  export vertex normals, or use a sweep\n");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lumiduct_base::mesh::bodies::{Normals, icosphere};
+
+    #[test]
+    fn copies_with_triangles_of_their_own_are_counted_with_the_reason() {
+        let mut assembly = MeshAssembly::from(icosphere(1.0, 1, Normals::None));
+        assembly.joined = [(WhyJoined::Touching, 3), (WhyJoined::Tiny, 1)].into_iter().collect();
+        let text = mesh_report("balls.glb", &assembly, &assembly.health());
+        for words in [
+            "\n3 of the copies do not share triangles: by their boxes they may touch another part\n",
+            "\n1 of the copies do not share triangles: they are far smaller than another copy\n",
+        ] {
+            assert!(text.contains(words), "{text}");
         }
     }
 }

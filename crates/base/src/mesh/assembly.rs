@@ -5,6 +5,7 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::health::{CoarseFacets, MeshHealth, health};
 use glam::{DAffine3, DVec3};
 use indexmap::IndexMap;
+use std::collections::BTreeMap;
 
 /// Most triangles of an assembly, those of a copied body counted at each of its places.
 pub const MAX_SHOWN_TRIANGLES: u64 = 1_000_000_000;
@@ -21,6 +22,23 @@ pub struct MeshAssembly {
     pub mesh: TriangleMesh,
     /// Bodies with copies.
     pub copied: Vec<CopiedBody>,
+    /// How many nodes of a file show a mesh that others show, too, but have triangles of their own in `mesh`, and why.
+    pub joined: BTreeMap<WhyJoined, usize>,
+}
+
+/// Why a node of a file does not share the triangles of its mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum WhyJoined {
+    /// All copies together have few triangles, which one tree over all finds faster.
+    Few,
+    /// It may touch another part, by their boxes.
+    Touching,
+    /// Its mesh is not closed by itself.
+    Open,
+    /// It stretches or shears its mesh.
+    Distorted,
+    /// It is far smaller than another copy.
+    Tiny,
 }
 
 /// A body and the places of its copies.
@@ -43,7 +61,7 @@ pub struct FaceSize {
 
 impl From<TriangleMesh> for MeshAssembly {
     fn from(mesh: TriangleMesh) -> Self {
-        Self { mesh, copied: Vec::new() }
+        Self { mesh, copied: Vec::new(), joined: BTreeMap::new() }
     }
 }
 
@@ -178,7 +196,7 @@ mod tests {
         };
         let copied =
             CopiedBody { body: ball.clone(), places: vec![place(1.0, 5.0), place(2.0, 9.0)] };
-        let assembly = MeshAssembly { mesh: ball.clone(), copied: vec![copied] };
+        let assembly = MeshAssembly { copied: vec![copied], ..ball.clone().into() };
         let (one, all) = (health(&ball), assembly.health());
         assert!(all.is_sound());
         assert_eq!((all.shells, assembly.triangle_count()), (3, 960));

@@ -101,7 +101,7 @@ impl MeshBuilder {
         if self.triangles.is_empty() && copied.is_empty() {
             return Err(UnusableMesh::NoTriangles);
         }
-        Ok(MeshAssembly { mesh: self.into_mesh(), copied })
+        Ok(MeshAssembly { copied, ..self.into_mesh().into() })
     }
 
     fn into_mesh(self) -> TriangleMesh {

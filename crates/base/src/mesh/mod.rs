@@ -11,7 +11,9 @@ mod builder;
 mod health;
 pub mod topology;
 
-pub use assembly::{CopiedBody, FaceSize, MAX_SHOWN_TRIANGLES, MeshAssembly, TRIANGLE_BYTES};
+pub use assembly::{
+    CopiedBody, FaceSize, MAX_SHOWN_TRIANGLES, MeshAssembly, TRIANGLE_BYTES, WhyJoined,
+};
 pub use builder::{MeshBuilder, UnusableMesh};
 pub use health::{Defects, MeshHealth, health, normals_agree};
 pub use topology::is_closed;

@@ -9,15 +9,15 @@ use crate::mesh::error::MeshError;
 use crate::mesh::format::LengthUnit;
 use crate::mesh::gltf_buffers::{Buffers, broken};
 use crate::mesh::gltf_copies::{
-    Copies, copied, grouped, mirror, refuse_impossible_copies, refuse_large_copies,
-    refuse_large_meshes, touching, triangle_counts,
+    Copies, copied, grouped, joined, mirror, reasons, refuse_impossible_copies,
+    refuse_large_copies, refuse_large_meshes, touching, triangle_counts,
 };
 use crate::mesh::gltf_nodes::{PlacedMesh, placed_meshes};
 use crate::mesh::gltf_primitive::add_primitive;
 use glam::{DAffine3, DVec3};
 use gltf::json::Root;
 use lumiduct_base::math::Aabb;
-use lumiduct_base::mesh::{CopiedBody, MeshAssembly, MeshBuilder, is_closed};
+use lumiduct_base::mesh::{CopiedBody, MeshAssembly, MeshBuilder, WhyJoined, is_closed};
 use std::path::Path;
 
 /// The extension that shows a mesh many times by one node.
@@ -41,18 +41,21 @@ pub(crate) fn read(
     let placed = placed_meshes(&root, unit.millimetres())?;
     let counts = triangle_counts(&root, &buffers, &placed)?;
     refuse_impossible_copies(&placed, &counts)?;
+    let mut shown = vec![0; counts.len()];
+    placed.iter().for_each(|own| shown[own.mesh.value()] += 1);
     let (groups, others) = grouped(placed, &counts);
     refuse_large_meshes(&groups, &others, &counts)?;
     let (closed, open) = document.bodies(groups)?;
-    let mut joined = [others, open].concat();
-    refuse_large_copies(&joined, &counts)?;
+    let mut all_joined = [others, open].concat();
+    refuse_large_copies(&all_joined, &counts)?;
     let mut builder = MeshBuilder::default();
-    document.add(&mut builder, &joined)?;
+    document.add(&mut builder, &all_joined)?;
     let (shared, near) = apart(closed, builder.positions());
-    joined.extend(&near);
-    refuse_large_copies(&joined, &counts)?;
+    all_joined.extend(&near);
+    refuse_large_copies(&all_joined, &counts)?;
     document.add(&mut builder, &near)?;
-    Ok(builder.finish_with(shared)?)
+    let assembly = builder.finish_with(shared)?;
+    Ok(MeshAssembly { joined: reasons(&all_joined, &shown), ..assembly })
 }
 
 /// A document and what it refers to.
@@ -85,7 +88,7 @@ impl Document<'_> {
             if is_closed(&body) {
                 closed.push((copied(&copies, body)?, copies.nodes));
             } else {
-                open.extend(copies.nodes);
+                open.extend(joined(copies.nodes, WhyJoined::Open));
             }
         }
         Ok((closed, open))
@@ -103,7 +106,7 @@ fn apart(closed: Vec<Placed>, vertices: &[DVec3]) -> (Vec<CopiedBody>, Vec<Place
     for (CopiedBody { body, places }, nodes) in closed {
         let mut alone = Vec::new();
         for ((place, node), touches) in places.into_iter().zip(nodes).zip(&mut touches) {
-            if touches { near.push(node) } else { alone.push(place) }
+            if touches { near.push(node.joined(WhyJoined::Touching)) } else { alone.push(place) }
         }
         if !alone.is_empty() {
             shared.push(CopiedBody { body, places: alone });

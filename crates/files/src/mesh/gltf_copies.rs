@@ -15,7 +15,7 @@ use gltf::json::validation::Checked;
 use lumiduct_base::math::Aabb;
 use lumiduct_base::mesh::{
     CopiedBody, MAX_COORDINATE_MM, MAX_SHOWN_TRIANGLES, MAX_TRIANGLES, TRIANGLE_BYTES,
-    TriangleMesh, UnusableMesh,
+    TriangleMesh, UnusableMesh, WhyJoined,
 };
 use std::collections::{BTreeMap, HashMap};
 
@@ -123,8 +123,9 @@ pub(crate) fn refuse_large_meshes(
 
 /// Nodes that may share a mesh, and all others.
 pub(crate) fn grouped(placed: Vec<PlacedMesh>, counts: &[u64]) -> (Vec<Copies>, Vec<PlacedMesh>) {
-    let (similar, mut others): (Vec<_>, Vec<_>) =
+    let (similar, distorted): (Vec<_>, Vec<_>) =
         placed.into_iter().partition(|own| is_undistorted(own.to_scene.matrix3));
+    let mut others: Vec<PlacedMesh> = joined(distorted, WhyJoined::Distorted).collect();
     let mut groups: BTreeMap<(usize, bool), Vec<PlacedMesh>> = BTreeMap::new();
     for own in similar {
         let is_mirrored = own.to_scene.matrix3.determinant() < 0.0;
@@ -136,16 +137,31 @@ pub(crate) fn grouped(placed: Vec<PlacedMesh>, counts: &[u64]) -> (Vec<Copies>, 
         let least = LEAST_SCALE * nodes.iter().map(scale).fold(0.0, f64::max);
         let (nodes, tiny): (Vec<_>, Vec<_>) =
             nodes.into_iter().partition(|own| scale(own) >= least);
-        others.extend(tiny);
+        others.extend(joined(tiny, WhyJoined::Tiny));
         let more = nodes.len() as u64 - 1;
         if more.saturating_mul(counts[mesh]) < LEAST_SHARED {
-            others.extend(nodes);
+            others.extend(joined(nodes, WhyJoined::Few));
         } else {
             shared.push(Copies { is_mirrored, nodes });
         }
     }
     others.sort_by_key(|own| own.order);
     (shared, others)
+}
+
+/// Nodes with triangles of their own.
+pub(crate) fn joined(nodes: Vec<PlacedMesh>, why: WhyJoined) -> impl Iterator<Item = PlacedMesh> {
+    nodes.into_iter().map(move |own| own.joined(why))
+}
+
+/// How many nodes have triangles of their own though others show the same mesh, and why.
+pub(crate) fn reasons(nodes: &[PlacedMesh], shown: &[usize]) -> BTreeMap<WhyJoined, usize> {
+    let mut counts = BTreeMap::new();
+    for own in nodes.iter().filter(|own| shown[own.mesh.value()] > 1) {
+        let Some(why) = own.joined else { continue };
+        *counts.entry(why).or_default() += 1;
+    }
+    counts
 }
 
 fn is_undistorted(matrix: DMat3) -> bool {
@@ -241,6 +257,7 @@ mod tests {
     fn many_copies_share_their_triangles_and_few_are_joined() {
         let few = rods(row(20, 5.0)).unwrap();
         assert_eq!((few.mesh.triangles.len(), few.copied.len()), (20 * 96, 0));
+        assert_eq!(few.joined, BTreeMap::from([(WhyJoined::Few, 20)]));
         let many = rods(row(MANY, 5.0)).unwrap();
         assert_eq!((many.mesh.triangles.len(), many.copied.len()), (0, 1));
         assert_eq!(many.copied[0].places.len(), MANY);
@@ -260,6 +277,10 @@ mod tests {
         nodes.push(json!({ "mesh": 0, "translation": [5, 0, 10] }));
         let assembly = rods(nodes).unwrap();
         assert_eq!(assembly.mesh.triangles.len(), 5 * 96);
+        assert_eq!(
+            assembly.joined,
+            BTreeMap::from([(WhyJoined::Touching, 4), (WhyJoined::Tiny, 1)])
+        );
         assert_eq!(assembly.copied[0].places.len(), MANY - 2);
         assert!(assembly.health().crowded_edges.count > 0, "ends that are joined face each other");
     }
@@ -274,6 +295,7 @@ mod tests {
         nodes.push(json!({ "mesh": 0, "translation": [0, -9, 0], "scale": [1, 1.5, 1] }));
         let assembly = rods(nodes).unwrap();
         assert_eq!(assembly.mesh.triangles.len(), 96);
+        assert_eq!(assembly.joined, BTreeMap::from([(WhyJoined::Distorted, 1)]));
         assert_eq!(assembly.copied.len(), 2);
         let volume = |assembly: &MeshAssembly| assembly.health().signed_volume_mm3;
         let (all, one) = (volume(&assembly), volume(&rods(row(1, 0.0)).unwrap()));
@@ -289,6 +311,7 @@ mod tests {
         json["nodes"] = row(2 * MANY, 5.0).into();
         let read = read(&glb(&json, &blob), Path::new(""), LengthUnit::Millimetre).unwrap();
         assert_eq!((read.mesh.triangles.len(), read.copied.len()), (2 * MANY * 72, 0));
+        assert_eq!(read.joined, BTreeMap::from([(WhyJoined::Open, 2 * MANY)]));
     }
 
     #[test]
@@ -316,6 +339,7 @@ mod tests {
             order: node,
             mesh: gltf::json::Index::new(0),
             to_scene: DAffine3::from_translation(DVec3::X * node as f64),
+            joined: None,
         };
         let placed: Vec<PlacedMesh> = (0..1000).map(place).collect();
         // Half a million triangles each, shared or not.

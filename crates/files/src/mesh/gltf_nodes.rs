@@ -7,6 +7,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json::mesh::Mesh;
 use gltf::json::scene::Node;
 use gltf::json::{Index, Root};
+use lumiduct_base::mesh::WhyJoined;
 
 /// A node that shows a mesh.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +18,15 @@ pub(crate) struct PlacedMesh {
     pub(crate) order: usize,
     pub(crate) mesh: Index<Mesh>,
     pub(crate) to_scene: DAffine3,
+    /// Why it does not share the triangles of its mesh, if it does not.
+    pub(crate) joined: Option<WhyJoined>,
+}
+
+impl PlacedMesh {
+    /// The node with triangles of its own.
+    pub(crate) fn joined(self, why: WhyJoined) -> Self {
+        Self { joined: Some(why), ..self }
+    }
 }
 
 /// All nodes of the scene that show a mesh, parents before their children; a unit of the document has `unit_mm`.
@@ -34,7 +44,8 @@ pub(crate) fn placed_meshes(root: &Root, unit_mm: f64) -> Result<Vec<PlacedMesh>
             return Err(broken("a node names a mesh that does not exist".into()));
         }
         let to_scene = DAffine3::from_scale(DVec3::splat(unit_mm)) * to_scene;
-        placed.push(PlacedMesh { node: number, order: placed.len(), mesh, to_scene });
+        let order = placed.len();
+        placed.push(PlacedMesh { node: number, order, mesh, to_scene, joined: None });
     }
     Ok(placed)
 }

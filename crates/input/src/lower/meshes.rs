@@ -135,7 +135,7 @@ impl Context<'_> {
         &mut self,
         name: &str,
         solid: SolidId,
-        MeshAssembly { mesh, copied }: MeshAssembly,
+        MeshAssembly { mesh, copied, .. }: MeshAssembly,
         finishes: &MeshFinishes,
         frame: &Frame,
     ) {

@@ -2,6 +2,7 @@
 
 use lumiduct_base::error::Diagnostic;
 use lumiduct_base::number::{format_value, format_with_error};
+use lumiduct_report::study::LatestGain;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -36,9 +37,9 @@ pub struct BatchProgress {
 pub enum SearchLead {
     /// The best design.
     Best(BestDesign),
-    /// A front of so many designs.
+    /// The size of the front.
     Front {
-        /// How many.
+        /// Designs on it.
         designs: usize,
     },
 }
@@ -48,14 +49,14 @@ pub enum SearchLead {
 pub struct BestDesign {
     /// Its number, from 1.
     pub number: usize,
-    /// The measure that decides, and its error.
+    /// The measure that decides, in its unit.
     pub value: f64,
-    /// Standard error with bias.
+    /// Its standard error with bias, in the unit of the measure.
     pub error: f64,
     /// Whether it passes every check; if not, it is the closest to that.
     pub passes: bool,
-    /// How many designs the latest are, and how much better they have made the best; `None` before there are as many.
-    pub gain: Option<(usize, f64)>,
+    /// How much better the latest designs with its choices have made it; `None` while no earlier one passes.
+    pub gain: Option<LatestGain>,
 }
 
 impl BatchProgress {
@@ -87,10 +88,10 @@ impl SearchLead {
             return format!(", design {number} is the closest to passing its checks");
         }
         let found = if error > 0.0 { format_with_error(value, error) } else { format_value(value) };
-        let gained = gain.map_or(String::new(), |(designs, gain)| {
-            format!(" ({} gained by the latest {designs})", format_value(gain))
+        let gained = gain.map_or(String::new(), |LatestGain { designs, gain }| {
+            format!(" (the latest {designs} gained {})", format_value(gain.value))
         });
-        format!(", best {number}: {found}{gained}")
+        format!(", best is design {number}: {found}{gained}")
     }
 }
 

@@ -7,6 +7,9 @@ use lumiduct_core::plan::Request;
 use lumiduct_input::{Keep, Setting, Settings, Study};
 use lumiduct_report::study::{Confirmation, DesignRecord};
 
+/// How often each is traced again, at most.
+pub(crate) const CONFIRMATIONS: usize = 2;
+
 /// Traces some of all designs again by the estimator of the study and by another, which no scene that fluoresces has; `None`
 /// if it was interrupted.
 pub(crate) fn confirmations(
@@ -22,7 +25,7 @@ pub(crate) fn confirmations(
     let runs = found.len() * estimators.len();
     let tracing = DesignTracing::new(batch, [designs + runs, runs])?;
     let seed = fresh_seed(batch.study);
-    let is_front = batch.study.objectives().len() > 1;
+    let is_front = batch.study.is_front();
     let mut again = Vec::new();
     for own in found {
         let setting = |name: &String| own.settings.get(name).cloned().unwrap_or(Setting::AsInScene);

@@ -92,7 +92,7 @@ pub(crate) fn expect_design(
 }
 
 /// What the parameters are set to in a design, by their names.
-fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
+pub(crate) fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
     let names = study.parameters.iter().map(|parameter| parameter.name.clone());
     names.zip(design.settings.iter().cloned()).collect()
 }

@@ -3,7 +3,7 @@
 use crate::pipeline::VERSION;
 use lumiduct_input::{Cost, Parameter, Plan, Project, Study, Tie};
 use lumiduct_report as report;
-use lumiduct_report::study::{FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts};
+use lumiduct_report::study::{FACTS_FORMAT, GainLimit, ParameterFacts, PlanFacts, StudyFacts};
 
 /// What a study is, for its reports.
 pub(crate) fn facts(study: &Study, designs: usize) -> StudyFacts {
@@ -38,8 +38,10 @@ pub(crate) fn facts(study: &Study, designs: usize) -> StudyFacts {
         parameters: study.parameters.iter().map(parameter_facts).collect(),
         measures: study.measures.iter().cloned().chain(cost).collect(),
         ranking: study.ranking.clone(),
-        objectives: study.plan.search().map_or(Vec::new(), |plan| plan.objectives.clone()),
-        least_gain: study.plan.search().and_then(|plan| plan.least_gain),
+        objectives: study.objectives().to_vec(),
+        gain_limit: study.plan.search().and_then(|plan| {
+            Some(GainLimit { least: plan.least_gain?, designs: plan.designs as usize })
+        }),
         checks: study.checks.clone(),
         keep: study.keep,
     }

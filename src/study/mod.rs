@@ -28,7 +28,7 @@ pub use store::OnExisting;
 
 use crate::pipeline;
 use crate::study::analysis::analysed;
-use crate::study::confirm::confirmations;
+use crate::study::confirm::{CONFIRMATIONS, confirmations};
 use crate::study::designs::designs;
 use crate::study::execute::{DesignBatch, execute};
 use crate::study::facts::facts;
@@ -41,7 +41,9 @@ use lumiduct_core::transport::{Activity, Interrupt, Shard};
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::{Problems, name_hint};
 use lumiduct_input::{Move, Study, StudySettings, load_study, rewritten_scene};
-use lumiduct_report::study::{DesignRecord, StudyFacts, StudyReport, study_files};
+use lumiduct_report::study::{
+    DesignRecord, StudyFacts, StudyReport, front_scene_name, study_files,
+};
 use lumiduct_report::{Existing, Folder, OutputFile, Written, is_among};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -140,7 +142,9 @@ pub fn run_study(
     let mut report = analysed(facts.clone(), records.into_values().collect());
     if !test_found(&batch, &mut report)? {
         write_best_scene(&study, &store, &report)?;
-        let open = facts.production_designs.unwrap_or(1);
+        // Of the designs that are traced again none is kept.
+        let again = report.analysis.front.len() * CONFIRMATIONS;
+        let open = facts.production_designs.unwrap_or(again.max(1));
         return Ok(unfinished([store.records()?.len(), done[1] + open]));
     }
     interrupt.begin(Activity::Computing);
@@ -277,12 +281,14 @@ fn found_scene(study: &Study, store: &Store, found: &DesignRecord) -> Result<Out
         "Found by the study `{}` (digest {}): design {} of the scene `{}`.",
         study.name, study.hash, found.design, study.base.name
     )];
-    let overrides = study.common.with(settings.flatten()).overrides;
+    let mut overrides = study.common.with(settings.flatten()).overrides;
+    let mut name = format!("{}_best.toml", study.base.name);
+    if study.is_front() {
+        let title = format!("{}, design {}", study.base.title, found.design);
+        overrides.push(format!("title={}", serde_json::Value::from(title)));
+        name = front_scene_name(&study.base.name, found.design);
+    }
     let text = rewritten_scene(&study.base.text, &overrides, way, &comment)?;
-    let name = match study.objectives().len() {
-        1 => format!("{}_best.toml", study.base.name),
-        _ => format!("{}_design_{}.toml", study.base.name, found.design),
-    };
     Ok(OutputFile { name, bytes: text.into_bytes() })
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn production(
         // What designs cost is for the choice between them.
         measures: batch.study.measures.clone(),
         ranking: None,
-        least_gain: None,
+        gain_limit: None,
         ..facts.clone()
     };
     Ok(Some(analysed(facts, records.into_values().collect())))

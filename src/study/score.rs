@@ -41,6 +41,11 @@ impl DesignStanding {
         }
     }
 
+    /// The score by a single objective.
+    pub(crate) fn score_of(ranking: &Ranking, record: &DesignRecord) -> f64 {
+        Self::of(std::slice::from_ref(ranking), record).score(&Goal::One(0))
+    }
+
     /// What it costs by each objective, if it passes.
     pub(crate) fn costs(&self) -> Option<&[f64]> {
         match self {
@@ -60,6 +65,16 @@ impl DesignStanding {
             Self::Fails(shortfall) => 1.0 + shortfall,
         }
     }
+}
+
+/// The places of the designs that no other beats: that is as good by every objective, and better by one.
+pub(crate) fn unbeaten(costs: &[&[f64]]) -> Vec<usize> {
+    let beats = |one: &[f64], other: &[f64]| {
+        let mut pairs = one.iter().zip(other);
+        one != other && pairs.all(|(one, other)| one <= other)
+    };
+    let is_beaten = |own: &&[f64]| costs.iter().any(|other| beats(other, own));
+    (0..costs.len()).filter(|place| !is_beaten(&costs[*place])).collect()
 }
 
 /// What a search makes small.
@@ -114,6 +129,14 @@ mod tests {
         assert!(score(Best::Lowest, 1.0) < score(Best::Lowest, 1e6));
         assert!(score(Best::Lowest, 1e6) < DesignStanding::Fails(0.0).score(&Goal::One(0)));
         assert_eq!(score(Best::Lowest, f64::NAN), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_front_has_all_designs_that_no_other_beats() {
+        let costs = [[1.0, 5.0], [2.0, 3.0], [2.0, 4.0], [4.0, 1.0], [4.0, 1.0], [5.0, 1.0]];
+        let costs: Vec<&[f64]> = costs.iter().map(|own| &own[..]).collect();
+        assert_eq!(unbeaten(&costs), [0, 1, 3, 4]);
+        assert_eq!(unbeaten(&[]), [0_usize; 0]);
     }
 
     #[test]

@@ -2,16 +2,15 @@
 //!
 //! A resumed search proposes the same designs again and takes their records.
 
-use crate::study::analysis::latest_gain;
+use crate::study::analysis::Gains;
 use crate::study::board::{BestDesign, SearchLead};
 use crate::study::designs::Design;
-use crate::study::execute::{DesignBatch, DesignEnd, DesignTracing, expect_design};
-use crate::study::front::front;
-use crate::study::propose::{DesignMeter, ProposalEnd, ProposalStop, count_searched, propose};
-use crate::study::race::ChoiceSet;
-use crate::study::score::{DesignStanding, Goal};
+use crate::study::execute::{DesignBatch, DesignEnd, DesignTracing, expect_design, settings};
+use crate::study::propose::{DesignMeter, ProposalEnd, ProposalStop, propose};
+use crate::study::score::{DesignStanding, Goal, unbeaten};
+use indexmap::IndexMap;
 use lumiduct_base::error::Result;
-use lumiduct_input::{SearchPlan, Setting};
+use lumiduct_input::{Ranking, SearchPlan, Setting};
 use lumiduct_report::study::{DesignRecord, LatestGain};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -67,62 +66,59 @@ impl RecordedDesigns<'_> {
         Ok(record)
     }
 
-    /// What the latest designs of a combination have gained, where one objective decides.
-    fn latest_gain(&self, combination: &ChoiceSet) -> Option<LatestGain> {
-        let parameters = &self.batch.study.parameters;
-        let [ranking] = self.batch.study.objectives() else { return None };
-        let is_own = |record: &&DesignRecord| {
-            let settings: Vec<Setting> = record.settings.values().cloned().collect();
-            combination.is_of(&settings)
-        };
-        let designs = self.records.range(..=self.standings.len()).map(|(_, record)| record);
-        let designs: Vec<&DesignRecord> = designs.filter(is_own).collect();
-        latest_gain(ranking, count_searched(parameters), &designs)
+    /// The measure that decides; `None` for a front.
+    fn ranking(&self) -> Option<&Ranking> {
+        self.batch.study.ranking.as_ref()
     }
 
-    /// Shows the best design so far, or how large the front is.
-    fn show_lead(&self, combination: &ChoiceSet) {
-        let [ranking] = self.batch.study.objectives() else {
+    /// What the latest designs with the choices of some settings have gained.
+    fn latest_gain(&self, settings: &IndexMap<String, Setting>) -> Option<LatestGain> {
+        let parameters = self.batch.study.parameters.iter().map(|own| (&own.name, &own.domain));
+        let designs = self.records.range(..=self.standings.len()).map(|(_, record)| record);
+        Gains::new(self.ranking()?, parameters).latest(settings, designs)
+    }
+
+    /// The best design so far, or how large the front is; `None` while nothing could be measured.
+    fn lead(&self) -> Option<SearchLead> {
+        let Some(ranking) = self.ranking() else {
             let costs: Vec<&[f64]> =
                 self.standings.iter().filter_map(DesignStanding::costs).collect();
-            self.tracing.board.show_lead(SearchLead::Front { designs: front(&costs).len() });
-            return;
+            return Some(SearchLead::Front { designs: unbeaten(&costs).len() });
         };
         let scores = self.standings.iter().map(|own| own.score(&Goal::One(0)));
         let numbered = (1..).zip(scores).filter(|(_, score)| score.is_finite());
-        let best = numbered.min_by(|one, other| one.1.total_cmp(&other.1));
-        let best = best.and_then(|(number, _)| self.records.get(&number));
-        if let Some((best, found)) =
-            best.and_then(|own| Some((own, own.measure(&ranking.measure)?)))
-        {
-            let gain = self.latest_gain(combination);
-            self.tracing.board.show_lead(SearchLead::Best(BestDesign {
-                number: best.design,
-                value: found.value,
-                error: found.total_error(),
-                passes: best.passes(),
-                gain: gain.map(|own| (own.designs, own.gain.value)),
-            }));
-        }
+        let (number, _) = numbered.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        let best = self.records.get(&number)?;
+        let found = best.measure(&ranking.measure)?;
+        Some(SearchLead::Best(BestDesign {
+            number,
+            value: found.value,
+            error: found.total_error(),
+            passes: best.passes(),
+            gain: self.latest_gain(&best.settings),
+        }))
     }
 }
 
 impl DesignMeter for RecordedDesigns<'_> {
-    fn measure(
-        &mut self,
-        design: &Design,
-        combination: &ChoiceSet,
-    ) -> std::result::Result<DesignStanding, ProposalStop> {
-        let objectives = self.batch.study.objectives();
+    fn measure(&mut self, design: &Design) -> std::result::Result<DesignStanding, ProposalStop> {
+        let study = self.batch.study;
+        let objectives = match &study.ranking {
+            Some(ranking) => std::slice::from_ref(ranking),
+            None => study.objectives(),
+        };
         let standing = DesignStanding::of(objectives, self.recorded(design)?);
         self.standings.push(standing.clone());
-        self.show_lead(combination);
+        if let Some(lead) = self.lead() {
+            self.tracing.board.show_lead(lead);
+        }
         Ok(standing)
     }
 
-    fn is_settled(&self, combination: &ChoiceSet) -> bool {
-        let gain = || self.latest_gain(combination).map(|own| own.gain);
-        let is_less = |least: f64| gain().is_some_and(|own| own.value <= least.max(own.std_error));
-        self.plan.least_gain.is_some_and(is_less)
+    fn is_settled(&self, next: &Design) -> bool {
+        let gain = || self.latest_gain(&settings(self.batch.study, next)).map(|own| own.gain);
+        let is_within =
+            |least: f64| gain().is_some_and(|own| own.value <= least.max(own.std_error));
+        self.plan.least_gain.is_some_and(is_within)
     }
 }

@@ -28,7 +28,7 @@ const SUM_WEIGHT: f64 = 0.05;
 /// Random designs that stand for all where the front is not known in closed form.
 const MANY: usize = 3_000_000;
 
-/// Two costs to minimise.
+/// Two costs to minimise; a margin of exactly 0 means that there is no check.
 struct Function {
     name: &'static str,
     parameters: usize,
@@ -102,7 +102,7 @@ fn bowls(shares: &[f64]) -> ([f64; 2], f64) {
 /// A design that was measured.
 struct Design {
     shares: Vec<f64>,
-    /// Costs with noise; `None` where its check fails.
+    /// Costs with noise, or by how much its check fails.
     measured: Result<[f64; 2], f64>,
     /// True costs, if it truly passes.
     truth: Option<[f64; 2]>,

@@ -80,9 +80,9 @@ pub use scatter::measured_sheet;
 pub use spec::optimise::Vary;
 pub use spec::study::{Best, Keep, Ranking, Samples, SearchPlan, Tolerance};
 pub use study::{
-    Cost, DESIGN_COLUMN, Domain, LawKind, LightTarget, OTHER_COLUMNS, Optimisation,
-    OptimisationKind, Parameter, PatternFeedback, Plan, Setting, Study, StudySettings, Tie, column,
-    load_optimisation, load_study,
+    Cost, DESIGN_COLUMN, Domain, LATEST_PER_RANGE, LawKind, LightTarget, OTHER_COLUMNS,
+    Optimisation, OptimisationKind, Parameter, PatternFeedback, Plan, Setting, Study,
+    StudySettings, Tie, column, load_optimisation, load_study,
 };
 
 /// A scene that was read without errors.

@@ -3,16 +3,14 @@
 mod combine;
 mod effects;
 mod failures;
+mod front;
 mod gain;
 mod ranking;
 mod sensitivity;
 
-pub(crate) use gain::latest_gain;
+pub(crate) use gain::Gains;
 
-use crate::study::front::front;
-use crate::study::score::DesignStanding;
 use combine::{Term, combine};
-use lumiduct_input::Domain;
 use lumiduct_report::study::{
     Analysis, DesignRecord, LatestGain, Pairing, Sharpness, StudyFacts, StudyReport,
 };
@@ -27,7 +25,7 @@ pub(crate) fn analysed(facts: StudyFacts, designs: Vec<DesignRecord>) -> StudyRe
 fn analysis(facts: &StudyFacts, designs: &[DesignRecord]) -> Analysis {
     Analysis {
         ranked: ranking::ranked(facts, designs),
-        front: front_of(facts, designs),
+        front: front::front(facts, designs),
         latest_gain: gain_of(facts, designs),
         effects: effects::effects(facts, designs),
         sensitivities: sensitivity::sensitivities(facts, designs),
@@ -36,41 +34,13 @@ fn analysis(facts: &StudyFacts, designs: &[DesignRecord]) -> Analysis {
     }
 }
 
-/// The numbers of the designs on the front of a search, the best by the first objective first.
-fn front_of(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<usize> {
-    if facts.objectives.is_empty() {
-        return Vec::new();
-    }
-    let standings =
-        designs.iter().map(|own| (own.design, DesignStanding::of(&facts.objectives, own)));
-    let standings: Vec<(usize, DesignStanding)> = standings.collect();
-    let passing: Vec<(usize, &[f64])> =
-        standings.iter().filter_map(|(number, own)| Some((*number, own.costs()?))).collect();
-    let costs: Vec<&[f64]> = passing.iter().map(|own| own.1).collect();
-    let mut found: Vec<(usize, &[f64])> =
-        front(&costs).into_iter().map(|place| passing[place]).collect();
-    found.sort_by(|one, other| one.1[0].total_cmp(&other.1[0]));
-    found.into_iter().map(|(number, _)| number).collect()
-}
-
-/// What the latest designs of the combination of choices with the best design have gained, if that ends the search.
+/// What the latest designs with the choices of the best design have gained, if that ends the search.
 fn gain_of(facts: &StudyFacts, designs: &[DesignRecord]) -> Option<LatestGain> {
-    let ranking = facts.ranking.as_ref().filter(|_| facts.least_gain.is_some())?;
+    let ranking = facts.ranking.as_ref().filter(|_| facts.gain_limit.is_some())?;
     let best = ranking::ranked(facts, designs).first()?.design;
     let best = designs.iter().find(|own| own.design == best)?;
-    let (mut ranges, mut choices) = (0, Vec::new());
-    for own in &facts.parameters {
-        match own.domain {
-            Domain::Uniform { .. } => ranges += 1,
-            Domain::Levels(_) => choices.push(&own.name),
-            Domain::Normal { .. } | Domain::Listed | Domain::AsInScene => {}
-        }
-    }
-    let is_own = |design: &&DesignRecord| {
-        choices.iter().all(|name| design.settings.get(*name) == best.settings.get(*name))
-    };
-    let designs: Vec<&DesignRecord> = designs.iter().filter(is_own).collect();
-    latest_gain(ranking, ranges, &designs)
+    let parameters = facts.parameters.iter().map(|own| (&own.name, &own.domain));
+    Gains::new(ranking, parameters).latest(&best.settings, designs.iter())
 }
 
 /// How much sharper the difference of neighbouring designs is than if they were independent.
@@ -135,7 +105,7 @@ pub(crate) mod testing {
             measures: vec!["exit.flux".into()],
             ranking: Some(Ranking { measure: "exit.flux".into(), best: Best::Highest }),
             objectives: Vec::new(),
-            least_gain: None,
+            gain_limit: None,
             checks: Vec::new(),
             keep: Keep::Records,
         }

@@ -1,7 +1,7 @@
 //! Which design is the best, and with what certainty.
 
 use crate::study::analysis::combine::{Term, combine};
-use crate::study::score::{DesignStanding, Goal};
+use crate::study::score::DesignStanding;
 use lumiduct_input::Best;
 use lumiduct_report::study::{DesignRecord, Ranked, StudyFacts};
 
@@ -12,9 +12,7 @@ pub(super) fn ranked(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Ranked
         let value = design.measure(&ranking.measure)?.value;
         value.is_finite().then_some(value)
     };
-    let score = |design: &DesignRecord| {
-        DesignStanding::of(std::slice::from_ref(ranking), design).score(&Goal::One(0))
-    };
+    let score = |design: &DesignRecord| DesignStanding::score_of(ranking, design);
     let mut order: Vec<(f64, &DesignRecord)> =
         designs.iter().filter_map(|design| Some((value(design)?, design))).collect();
     order.sort_by(|(a, one), (b, other)| match (facts.plan.is_search(), ranking.best) {

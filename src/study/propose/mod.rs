@@ -6,7 +6,7 @@
 mod tests;
 
 use crate::study::designs::Design;
-use crate::study::front::{designs_weight, directions, goal, is_end};
+use crate::study::front::{directions, goal, is_end, share_weight};
 use crate::study::race::{ChoiceSet, KnownDesign, Race};
 use crate::study::sampling::quantile;
 use crate::study::score::{DesignStanding, Goal};
@@ -44,15 +44,11 @@ pub(crate) enum ProposalStop {
 
 /// What measures the designs that are proposed.
 pub(crate) trait DesignMeter {
-    /// What is known of a design of a combination.
-    fn measure(
-        &mut self,
-        design: &Design,
-        combination: &ChoiceSet,
-    ) -> std::result::Result<DesignStanding, ProposalStop>;
+    /// What is known of a design.
+    fn measure(&mut self, design: &Design) -> std::result::Result<DesignStanding, ProposalStop>;
 
-    /// Whether further designs of a combination are unlikely to gain anything.
-    fn is_settled(&self, combination: &ChoiceSet) -> bool;
+    /// Whether a design and further ones with the same choices are unlikely to gain anything.
+    fn is_settled(&self, next: &Design) -> bool;
 }
 
 /// Proposes designs until there are as many as the plan has.
@@ -136,8 +132,18 @@ impl<Meter: DesignMeter> DesignSearch<'_, Meter> {
         let most = self.plan.designs as usize / combinations.len();
         let directions = directions(self.plan, self.sides[0].len(), most);
         for combination in &combinations {
-            for place in 0..directions.len() {
-                if !self.follow(self.toward(&directions[place..], combination, most))? {
+            let weight = |own: &Vec<f64>| share_weight(own);
+            let mut weight_left: usize = directions.iter().map(weight).sum();
+            for (place, weights) in directions.iter().enumerate() {
+                let own = self.count(combination);
+                let part = Part {
+                    combination,
+                    most: own + (most - own) * share_weight(weights) / weight_left,
+                    seed: self.plan.seed.wrapping_add(place as u64),
+                    ..self.toward(weights, combination)
+                };
+                weight_left -= share_weight(weights);
+                if !self.follow(part)? {
                     return Ok(ProposalEnd::Stopped);
                 }
             }
@@ -145,29 +151,25 @@ impl<Meter: DesignMeter> DesignSearch<'_, Meter> {
         Ok(ProposalEnd::Complete(self.known.borrow().len()))
     }
 
-    /// The part of a combination of choices, of which there will be at most so many designs, in the first of some directions.
-    fn toward<'c>(
-        &self,
-        directions: &[Vec<f64>],
-        combination: &'c ChoiceSet,
-        most: usize,
-    ) -> Part<'c> {
-        let (known, weights) = (self.known.borrow(), &directions[0]);
+    /// The part of a combination of choices in a direction, with all designs of the plan.
+    fn toward<'c>(&self, weights: &[f64], combination: &'c ChoiceSet) -> Part<'c> {
+        let known = self.known.borrow();
         let standings: Vec<&DesignStanding> = known.iter().map(|own| &own.standing).collect();
-        let goal = goal(weights.clone(), &standings);
-        let own: Vec<&KnownDesign> =
-            known.iter().filter(|own| combination.is_of(&own.settings)).collect();
+        let goal = goal(weights.to_vec(), &standings);
         let score = |design: &KnownDesign| design.standing.score(&goal);
-        let best = own.iter().min_by(|one, other| score(one).total_cmp(&score(other)));
+        let own = known.iter().filter(|own| combination.is_of(&own.settings));
+        let best = own.min_by(|one, other| score(one).total_cmp(&score(other)));
         let start = match best {
             Some(best) if !is_end(weights) => self.shares(best),
             Some(_) | None => self.nominal_start(),
         };
-        let left: usize = directions.iter().map(|own| designs_weight(own)).sum();
-        let most = own.len() + (most - own.len()) * designs_weight(weights) / left;
-        // Other restarts than those of other directions.
-        let seed = self.plan.seed.wrapping_add(directions.len() as u64);
+        let (most, seed) = (self.plan.designs as usize, self.plan.seed);
         Part { combination, goal, start, most, seed, may_settle: false }
+    }
+
+    /// How many designs of a combination there are.
+    fn count(&self, combination: &ChoiceSet) -> usize {
+        self.known.borrow().iter().filter(|own| combination.is_of(&own.settings)).count()
     }
 
     /// Proposes the designs of a part; `false` if it was interrupted. Designs that are known cost nothing: in a later lap the
@@ -204,11 +206,11 @@ impl<Meter: DesignMeter> DesignSearch<'_, Meter> {
         }
         let (combination, mut meter) = (part.combination, self.meter.borrow_mut());
         let count = known.iter().filter(|own| combination.is_of(&own.settings)).count();
-        if count >= part.most || part.may_settle && meter.is_settled(combination) {
+        let design = Design { number: known.len() + 1, settings };
+        if count >= part.most || part.may_settle && meter.is_settled(&design) {
             return Err(ProposalStop::Full);
         }
-        let design = Design { number: known.len() + 1, settings };
-        let standing = meter.measure(&design, combination)?;
+        let standing = meter.measure(&design)?;
         let score = standing.score(&part.goal);
         known.push(KnownDesign { settings: design.settings, standing });
         Ok(score)
@@ -224,8 +226,21 @@ impl<Meter: DesignMeter> DesignSearch<'_, Meter> {
     fn shares(&self, design: &KnownDesign) -> Vec<f64> {
         let own = self.parameters.iter().zip(&design.settings);
         let searched = own.filter(|(parameter, _)| is_searched(parameter));
-        searched.map(|(parameter, setting)| share(parameter, setting).unwrap_or(0.5)).collect()
+        searched.map(|(parameter, setting)| start_share(parameter, setting)).collect()
     }
+}
+
+/// A share of the range of a parameter at which it has a setting, 0..=1; the middle where that is no number of the range.
+fn start_share(parameter: &Parameter, setting: &Setting) -> f64 {
+    let share = match (&parameter.domain, setting.number()) {
+        // Each whole number has a part of the range, as in `quantile`.
+        (Domain::Uniform { from, to }, Some(value)) if parameter.whole => {
+            let first = from.ceil();
+            Some(((value - first + 0.5) / (to.floor() - first + 1.0)).clamp(0.0, 1.0))
+        }
+        (_, _) => share(parameter, setting),
+    };
+    share.unwrap_or(0.5)
 }
 
 /// Whether a simplex varies a parameter.

@@ -188,8 +188,8 @@ pub(crate) enum PlanSpec {
     Sobol(Samples),
     /// Independent random samples, as production scatters them; they give the share of designs that pass.
     Tolerance(Samples),
-    /// Designs that a search proposes one after the other, to find the best by `ranking` or `cost` among those that pass every
-    /// `[[check]]`.
+    /// Designs that a search proposes one after the other, to find the best by `ranking` or `cost`, or a front by `objectives`, among those that
+    /// pass every `[[check]]`.
     Search(SearchPlan),
 }
 
@@ -207,13 +207,13 @@ pub struct SearchPlan {
     /// It is recorded as the measure `cost`.
     #[serde(default)]
     pub cost: IndexMap<String, f64>,
-    /// Two or three measures in place of `ranking`, `cost` among them if it is given: the search finds a front of designs, none of
-    /// which is beaten in all objectives.
+    /// Two or three measures in place of `ranking`, of which `cost` must be one if it is given: the search finds the designs for which no other is
+    /// as good in every objective and better in one.
     #[serde(default)]
-    #[schemars(length(max = MOST_OBJECTIVES))]
+    #[schemars(length(min = 2, max = MOST_OBJECTIVES))]
     pub objectives: Vec<Ranking>,
-    /// The search ends early when its latest designs, 10 for each range, have made the best design better by no more than this, in the unit of
-    /// the measure that decides, or by no more than the error of this gain. Omitted: it traces all `designs`.
+    /// The search ends early when its latest designs, 10 for each range, have improved the best by no more than this, in the unit of
+    /// the measure that decides, or by no more than the standard error of the improvement. Not with `objectives`. Omitted: it traces all `designs`.
     #[schemars(range(min = 0.0))]
     pub least_gain: Option<f64>,
     /// Number of simulated parts around the best design, where a parameter has a `tolerance`. Omitted: 100.
@@ -222,10 +222,10 @@ pub struct SearchPlan {
 }
 
 impl SearchPlan {
-    /// Least number of directions in which a front is searched: toward each objective, and between each two.
-    pub fn least_directions(&self) -> usize {
+    /// Least number of shares into which a front divides its designs: two for each objective, and one between any two.
+    pub fn least_shares(&self) -> usize {
         let count = self.objectives.len();
-        count * (count + 1) / 2
+        count * (count + 3) / 2
     }
 }
 
@@ -266,7 +266,7 @@ pub(crate) struct StudyRunSpec {
 /// What the best design is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ranking {
-    /// Name of the measure that decides, one of `measures`.
+    /// Name of the measure that decides, one of `measures`; among objectives also `cost`.
     pub measure: String,
     /// Whether the highest or the lowest value is the best.
     #[serde(default)]

@@ -14,6 +14,7 @@ pub use cost::Cost;
 pub use optimisation::feedback::{LawKind, LightTarget, PatternFeedback};
 pub use optimisation::{Optimisation, OptimisationKind, load_optimisation};
 pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
+pub use search_rules::LATEST_PER_RANGE;
 
 use crate::keys::{Key, Places};
 use crate::lower::plan;
@@ -131,12 +132,14 @@ pub struct Study {
 }
 
 impl Study {
-    /// What decides between designs: several measures for a front, else that of the ranking, if there is one.
+    /// The objectives of a front; none for any other study.
     pub fn objectives(&self) -> &[Ranking] {
-        match self.plan.search() {
-            Some(plan) if !plan.objectives.is_empty() => &plan.objectives,
-            Some(_) | None => self.ranking.as_slice(),
-        }
+        self.plan.search().map_or(&[], |plan| &plan.objectives)
+    }
+
+    /// Whether its result is a front.
+    pub fn is_front(&self) -> bool {
+        !self.objectives().is_empty()
     }
 }
 
@@ -178,8 +181,8 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
     let cost = plan.search().and_then(|own| Cost::new(&own.cost, &parameters));
-    let is_front = plan.search().is_some_and(|own| !own.objectives.is_empty());
-    let of_cost = cost.as_ref().filter(|_| !is_front).map(|_| Cost::ranking());
+    let is_single = plan.search().is_none_or(|own| own.objectives.is_empty());
+    let of_cost = cost.as_ref().filter(|_| is_single).map(|_| Cost::ranking());
     let ranking = of_cost.or(spec.ranking);
     let is_scattered = parameters.iter().any(|own| own.tolerance.is_some());
     let production = plan.search().filter(|_| is_scattered);

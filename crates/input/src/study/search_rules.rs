@@ -2,9 +2,14 @@
 
 use crate::keys::Key;
 use crate::problems::{Problems, name_hint};
-use crate::spec::study::{ParameterSpec, PlanSpec, Ranking, SearchPlan, StudySpec, Tolerance};
+use crate::spec::study::{
+    Best, ParameterSpec, PlanSpec, Ranking, SearchPlan, StudySpec, Tolerance,
+};
 use crate::study::cost::Cost;
 use crate::study::parameters::{Domain, Parameter};
+
+/// Latest designs of a search for each range: a simplex has usually converged after as many.
+pub const LATEST_PER_RANGE: usize = 10;
 
 /// Notes a search that does not say what is best, or says it twice.
 pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
@@ -31,7 +36,10 @@ pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
     }
     check_objectives(spec, plan, problems);
     check_cost(spec, plan, problems);
-    if plan.samples.is_some() && spec.parameters.values().all(|own| own.tolerance.is_none()) {
+    if plan.samples.is_some()
+        && plan.objectives.is_empty()
+        && spec.parameters.values().all(|own| own.tolerance.is_none())
+    {
         problems
             .error(&key.field("samples"), "no parameter has a `tolerance`, so nothing scatters")
             .hint("give one to the parameters that production scatters, or leave it out");
@@ -47,44 +55,65 @@ pub(super) fn check_search(spec: &StudySpec, problems: &mut Problems) {
     check_designs(spec, (plan, ranges), problems);
 }
 
-/// Notes objectives that are none, or that contradict other keys.
+/// Notes objectives that cannot be compared, or that contradict other keys.
 fn check_objectives(spec: &StudySpec, plan: &SearchPlan, problems: &mut Problems) {
-    let key = Key::of(&["plan", "search", "objectives"]);
+    let search = Key::of(&["plan", "search"]);
     let (objectives, is_costed) = (&plan.objectives, !plan.cost.is_empty());
     if objectives.is_empty() {
         return;
     }
-    if objectives.len() == 1 {
-        problems.error(&key, "a front has two or more").hint("use `[ranking]` for a single one");
-    }
-    for (place, Ranking { measure, .. }) in objectives.iter().enumerate() {
-        let key = key.index(place).field("measure");
-        let names = spec.measures.iter().map(String::as_str);
-        let names = names.chain(is_costed.then_some(Cost::NAME));
-        if objectives[..place].iter().any(|own| own.measure == *measure) {
-            problems.error(&key, format!("`{measure}` is listed twice")).hint("leave one out");
-        } else if names.clone().all(|own| own != measure) {
-            let message = format!("`{measure}` is not one of `measures`");
-            problems.error(&key, message).hint(name_hint(measure, names));
-        }
+    for (place, own) in objectives.iter().enumerate() {
+        let key = search.field("objectives").index(place);
+        check_objective(spec, (own, &objectives[..place]), is_costed, &key, problems);
     }
     if is_costed && objectives.iter().all(|own| own.measure != Cost::NAME) {
         problems
-            .error(&Key::of(&["plan", "search", "cost"]), "it is none of the `objectives`")
+            .error(&search.field("cost"), "it is none of the `objectives`")
             .hint("list it there as `{ measure = \"cost\", best = \"lowest\" }`, or leave it out");
     }
     if plan.least_gain.is_some() {
         problems
             .error(
-                &Key::of(&["plan", "search", "least_gain"]),
-                "a front has no best design to gain",
+                &search.field("least_gain"),
+                "it follows a single best design, and a front has none",
             )
             .hint("leave it out");
     }
+    let scatter = "production scatters a single best design, and a front has none";
+    if plan.samples.is_some() {
+        problems.error(&search.field("samples"), scatter).hint("leave it out");
+    }
     for (name, _) in spec.parameters.iter().filter(|(_, own)| own.tolerance.is_some()) {
         problems
-            .error(&Key::of(&["parameters", name, "tolerance"]), "a front has no best design to scatter")
-            .hint("choose a design of the front first, then search about it, or use the plan `tolerance`");
+            .error(&Key::of(&["parameters", name, "tolerance"]), scatter)
+            .hint("choose a design of the front, and trace its scene with the plan `tolerance`");
+    }
+}
+
+/// Notes an objective that is no measure, or is listed before.
+fn check_objective(
+    spec: &StudySpec,
+    (Ranking { measure, best }, before): (&Ranking, &[Ranking]),
+    is_costed: bool,
+    key: &Key,
+    problems: &mut Problems,
+) {
+    let names = spec.measures.iter().map(String::as_str);
+    let names = names.chain(is_costed.then_some(Cost::NAME));
+    let at = key.field("measure");
+    if before.iter().any(|own| own.measure == *measure) {
+        problems.error(&at, format!("`{measure}` is listed twice")).hint("leave one out");
+    } else if names.clone().all(|own| own != measure) {
+        let hint = match measure == Cost::NAME {
+            true => "say what a design costs: `cost = { PARAMETER = factor }` beside `objectives`"
+                .to_owned(),
+            false => name_hint(measure, names),
+        };
+        problems.error(&at, format!("`{measure}` is not one of `measures`")).hint(hint);
+    } else if measure == Cost::NAME && *best == Best::Highest {
+        problems
+            .error(key, "the lowest cost is the best")
+            .hint("add `best = \"lowest\"`; a negative factor rewards larger values");
     }
 }
 
@@ -124,19 +153,29 @@ fn check_cost(spec: &StudySpec, plan: &SearchPlan, problems: &mut Problems) {
 fn check_designs(spec: &StudySpec, (plan, ranges): (&SearchPlan, usize), problems: &mut Problems) {
     let counts = spec.parameters.values().filter_map(|own| Some(own.choices.as_ref()?.len()));
     let combinations = counts.fold(1_usize, usize::saturating_mul);
-    let directions = if plan.objectives.is_empty() { 1 } else { plan.least_directions() };
+    let shares = if plan.objectives.is_empty() { 1 } else { plan.least_shares() };
     // A simplex of each, and a design more.
-    let least = combinations.saturating_mul(directions).saturating_mul(ranges + 2);
-    if (combinations > 1 || directions > 1) && least > plan.designs as usize {
-        let what = match (combinations, directions) {
+    let least = combinations.saturating_mul(shares).saturating_mul(ranges + 2);
+    if (combinations > 1 || shares > 1) && least > plan.designs as usize {
+        let what = match (combinations, shares) {
             (1, _) => "a front".to_owned(),
             (_, 1) => format!("{combinations} combinations of choices"),
             (_, _) => format!("a front with {combinations} combinations of choices"),
         };
         let fewer = if combinations > 1 { ", or fewer choices" } else { "" };
+        let why = if shares > 1 { ", so that each direction has a simplex" } else { "" };
         problems
             .error(&Key::of(&["plan", "search", "designs"]), format!("too few for {what}"))
-            .hint(format!("give {least} or more{fewer}"));
+            .hint(format!("give {least} or more{why}{fewer}"));
+    }
+    let latest = LATEST_PER_RANGE * ranges;
+    if plan.least_gain.is_some() && latest >= plan.designs as usize {
+        let message = format!(
+            "it compares the latest {latest} designs, 10 for each range, with those before, and there are none"
+        );
+        problems
+            .error(&Key::of(&["plan", "search", "least_gain"]), message)
+            .hint("leave it out, or give more `designs`");
     }
 }
 

@@ -30,9 +30,9 @@ pub enum Pairing {
 pub struct Analysis {
     /// All designs that were traced, the best first; empty without a ranking.
     pub ranked: Vec<Ranked>,
-    /// Numbers of the designs on the front of a search with several objectives, the best by the first of them first.
+    /// The designs on the front of a search with several objectives, the best by the first of them first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub front: Vec<usize>,
+    pub front: Vec<FrontDesign>,
     /// What the latest designs of a search have gained, if that ends it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latest_gain: Option<LatestGain>,
@@ -44,6 +44,16 @@ pub struct Analysis {
     pub failures: Vec<FailureShare>,
     /// How much sharper differences between designs are than with independent random numbers.
     pub sharpness: Vec<Sharpness>,
+}
+
+/// A design on the front: no other that passes is as good in every objective and better in one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct FrontDesign {
+    /// Its number.
+    pub design: usize,
+    /// The first other design that would beat it if differences within three standard errors counted for nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rival: Option<usize>,
 }
 
 /// How much better the latest designs of a search have made the best.

@@ -4,17 +4,17 @@ use crate::page::{Block, PagePart, table};
 use crate::study::choices::best_of_choices;
 use crate::study::confirmation::{standing, traced_again};
 use crate::study::edge::edge_remark;
-use crate::study::front::{front_part, front_words};
+use crate::study::front::{front_again, front_part, front_words};
 use crate::study::sampled::{expected_failures, failures, produced, sensitivities};
 use crate::study::settings::{domain_words, setting_word, settings, settings_words};
 use crate::study::{
-    DesignOutcome, DesignRecord, LatestGain, Pairing, ParameterFacts, PlanFacts, StudyReport,
-    ValueWithError,
+    DesignOutcome, DesignRecord, GainLimit, LatestGain, Pairing, ParameterFacts, PlanFacts,
+    StudyReport, ValueWithError,
 };
 use crate::words::{measured, outcome_word};
 use lumiduct_base::number::{format_value, format_with_error};
 use lumiduct_core::measure::CheckOutcome;
-use lumiduct_input::Best;
+use lumiduct_input::{Best, Domain};
 use std::fmt::Write;
 
 /// Errors of a difference above which a design counts as behind the best, 1.
@@ -27,6 +27,7 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
         failures(report),
         best_of_choices(report),
         front_part(report),
+        front_again(report),
         ranking(report),
         traced_again(report),
         produced(report),
@@ -193,9 +194,13 @@ fn parameters(report: &StudyReport) -> PagePart {
     let head = ["parameter", "values", "keys of the scene"];
     let row = |own: &ParameterFacts| {
         let choices = own.choices.iter().map(|(name, value)| format!("{name}: {value}"));
-        let values = match own.choices.is_empty() {
-            true => domain_words(&own.domain),
-            false => choices.collect::<Vec<_>>().join("; "),
+        let values = match (own.choices.is_empty(), &own.domain) {
+            (false, _) => choices.collect::<Vec<_>>().join("; "),
+            // A search does not draw its values.
+            (true, Domain::Uniform { from, to }) if report.facts.plan.is_search() => {
+                format!("{} to {}", format_value(*from), format_value(*to))
+            }
+            (true, domain) => domain_words(domain),
         };
         vec![own.label(), values, own.keys.join(", ")]
     };
@@ -271,19 +276,24 @@ fn run(report: &StudyReport) -> PagePart {
 
 /// What the latest designs have gained, if that ends a search.
 fn gain_words(report: &StudyReport) -> Option<String> {
-    let least = report.facts.least_gain?;
+    let GainLimit { least, designs: all } = report.facts.gain_limit?;
+    let count = report.designs.len();
     let Some(LatestGain { designs, gain }) = report.analysis.latest_gain else {
-        return Some("too few designs to judge whether the search gains anything".to_owned());
+        return Some(
+            "no design passed early enough to judge what the latest ones gained".to_owned(),
+        );
     };
     let gained = match gain.std_error > 0.0 {
         true => format_with_error(gain.value, gain.std_error),
         false => format_value(gain.value),
     };
-    let limit = format!("`least_gain` is {}", format_value(least));
-    Some(match gain.value <= least.max(gain.std_error) {
-        true => format!(
-            "ended because its latest {designs} designs gained no more than {gained} ({limit})"
-        ),
-        false => format!("its latest {designs} designs still gained {gained} ({limit})"),
-    })
+    let is_early = count < all && gain.value <= least.max(gain.std_error);
+    let end = match is_early {
+        true => format!("so it ended after {count} of {all} designs"),
+        false => format!("and it had {count} of {all} designs"),
+    };
+    Some(format!(
+        "the latest {designs} designs with the choices of the best gained {gained}, `least_gain` is {}, {end}",
+        format_value(least)
+    ))
 }

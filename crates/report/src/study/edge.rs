@@ -10,11 +10,8 @@ const FEWEST: usize = 3;
 /// A remark on a best design at the least or greatest setting of a parameter: beyond it there may
 /// be a better one.
 pub(super) fn edge_remark(report: &StudyReport) -> Option<String> {
-    let best = report.analysis.ranked.first()?;
-    let best = report.designs.iter().find(|design| design.design == best.design)?;
-    let parameters = report.facts.parameters.iter();
-    let edges: Vec<String> =
-        parameters.filter_map(|parameter| edge(parameter, best, &report.designs)).collect();
+    let best = report.design(report.analysis.ranked.first()?.design)?;
+    let edges = edges(report, best);
     let ranges = if edges.len() == 1 { "that range" } else { "these ranges" };
     (!edges.is_empty()).then(|| {
         format!(
@@ -24,6 +21,26 @@ pub(super) fn edge_remark(report: &StudyReport) -> Option<String> {
             edges.join("; ")
         )
     })
+}
+
+/// A remark on designs of a front at the least or greatest setting of a parameter.
+pub(super) fn edges_of_front(report: &StudyReport) -> Option<String> {
+    let designs = report.front().filter(|design| !edges(report, design).is_empty());
+    let numbers: Vec<String> = designs.map(|design| design.design.to_string()).collect();
+    (!numbers.is_empty()).then(|| {
+        let (designs, lie) =
+            if numbers.len() == 1 { ("Design", "lies") } else { ("Designs", "lie") };
+        format!(
+            "{designs} {} {lie} at the edge of a range tried. The front may go on outside of it.",
+            numbers.join(", ")
+        )
+    })
+}
+
+/// The edges at which a design lies, in words.
+fn edges(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
+    let parameters = report.facts.parameters.iter();
+    parameters.filter_map(|parameter| edge(parameter, design, &report.designs)).collect()
 }
 
 /// At which edge of a parameter a design is, in words; `None` for one inside, and for choices.

@@ -17,14 +17,15 @@ mod tables;
 mod terminal;
 
 pub use analysis::{
-    Analysis, Effect, EffectPoint, FailureShare, LatestGain, Pairing, Ranked, Sensitivity,
-    SensitivityIndex, SensitivityMethod, Sharpness, ValueWithError,
+    Analysis, Effect, EffectPoint, FailureShare, FrontDesign, LatestGain, Pairing, Ranked,
+    Sensitivity, SensitivityIndex, SensitivityMethod, Sharpness, ValueWithError,
 };
 pub use record::{
     Confirmation, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT,
-    ParameterFacts, PlanFacts, StudyFacts, StudyReport,
+    GainLimit, ParameterFacts, PlanFacts, StudyFacts, StudyReport,
 };
 
+pub use front::front_scene_name;
 pub use terminal::terminal;
 
 use crate::OutputFile;

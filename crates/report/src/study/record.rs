@@ -61,9 +61,9 @@ pub struct StudyFacts {
     /// The measures of a search for a front.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objectives: Vec<Ranking>,
-    /// The gain by its latest designs at which a search ends early.
+    /// When a search ends early.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub least_gain: Option<f64>,
+    pub gain_limit: Option<GainLimit>,
     /// What every design has to meet.
     pub checks: Vec<Check>,
     /// What is kept of each design.
@@ -91,6 +91,15 @@ impl StudyFacts {
     pub fn is_same_study(&self, other: &Self) -> bool {
         (&self.name, &self.hash, self.designs) == (&other.name, &other.hash, other.designs)
     }
+}
+
+/// When a search ends before it has all its designs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GainLimit {
+    /// When its latest designs gain no more than this, in the unit of the measure that decides.
+    pub least: f64,
+    /// All its designs.
+    pub designs: usize,
 }
 
 /// How designs are made from the parameters.

@@ -2,7 +2,7 @@
 
 use crate::OutputFile;
 use crate::csv::table;
-use crate::study::{DesignOutcome, DesignRecord, StudyReport};
+use crate::study::{Analysis, DesignOutcome, DesignRecord, StudyReport};
 use crate::words::{numbered, outcome_word};
 use lumiduct_base::error::Result;
 use lumiduct_input::{DESIGN_COLUMN, OTHER_COLUMNS};
@@ -50,8 +50,8 @@ fn row(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
         let verdict = result.and_then(|result| result.checks.get(place));
         cells.push(verdict.map_or("", |own| outcome_word(own.verdict.outcome)).to_owned());
     }
-    let analysis = &report.analysis;
-    let mut order = analysis.ranked.iter().map(|own| own.design).chain(analysis.front.clone());
+    let Analysis { ranked, front, .. } = &report.analysis;
+    let mut order = ranked.iter().map(|own| own.design).chain(front.iter().map(|own| own.design));
     let rank = order.position(|number| number == design.design);
     cells.push(rank.map_or(String::new(), |rank| (rank + 1).to_string()));
     cells.push(result.map_or(String::new(), |result| result.paths.to_string()));

@@ -4,7 +4,8 @@ use crate::study::confirmation::words;
 use crate::study::contents::verdict;
 use crate::study::figures::setting_words;
 use crate::study::sampled::broken;
-use crate::study::{DesignOutcome, DesignRecord, StudyReport};
+use crate::study::{Confirmation, DesignOutcome, DesignRecord, StudyReport};
+use crate::words::measured;
 use lumiduct_base::number::format_percent;
 
 /// Designs that are named one by one.
@@ -18,7 +19,10 @@ pub fn terminal(report: &StudyReport) -> String {
     let mut text = format!("{}\n{}\n", report.facts.title, verdict(report));
     let (ranked, front) = (&report.analysis.ranked, &report.analysis.front);
     let (shown, most, rest): (Vec<usize>, _, _) = match (ranked.is_empty(), front.is_empty()) {
-        (_, false) => (front.clone(), FRONT_SHOWN, "more on the front"),
+        (_, false) => {
+            let numbers = front.iter().map(|own| own.design).collect();
+            (numbers, FRONT_SHOWN, "more on the front")
+        }
         (false, true) => {
             let numbers = ranked.iter().map(|own| own.design).collect();
             (numbers, DESIGNS_SHOWN, "designs ranked lower")
@@ -36,7 +40,11 @@ pub fn terminal(report: &StudyReport) -> String {
     if shown.len() > most {
         text += &format!("  and {} {rest}\n", shown.len() - most);
     }
-    for own in report.confirmations.iter().filter(|own| own.design.is_none() || own.refutes()) {
+    // Of a front those alone that do not confirm it.
+    let is_told = |own: &&Confirmation| {
+        own.design.is_none() || own.refutes() || own.outcome.result().is_none()
+    };
+    for own in report.confirmations.iter().filter(is_told) {
         text += &format!("  {}\n", words(own));
     }
     let made = report.production.iter().flat_map(|made| &made.analysis.failures);
@@ -72,7 +80,7 @@ pub fn terminal(report: &StudyReport) -> String {
 fn leading_values(report: &StudyReport, design: &DesignRecord) -> Option<String> {
     let objectives = report.facts.objectives.iter().map(|own| own.measure.as_str());
     let leading = report.facts.objectives.is_empty().then(|| report.leading().0);
-    let value = |name: &str| Some(format!("{name} {}", design.measure(name)?));
+    let value = |name: &str| Some(format!("{name} {}", measured(design.measure(name)?)));
     let values: Option<Vec<String>> = objectives.chain(leading).map(value).collect();
     Some(values?.join(", "))
 }

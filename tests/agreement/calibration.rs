@@ -1,7 +1,8 @@
 //! The errors that runs state are those they have: over many seeds, deviations from the truth are as large.
 
 use crate::connections::{LIT_DISC, flux_of_lit_disc};
-use crate::trial::{Gathering, Way, load};
+use crate::trial::{Gathering, Way, load, measures_of_paths};
+use lumiduct_core::measure;
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::scene::{SensorId, SourceId};
 use lumiduct_core::transport::{Layout, Orders, Run};
@@ -84,3 +85,46 @@ fn errors_of_merged_light_are_calibrated() {
         Gathering { depth: 0, radius_mm: 0.5, angle_deg: 10.0, records: 100, photons: 100 };
     assert_gathered("lit disc", LIT_DISC, Way::Merged(gathering), flux_of_lit_disc());
 }
+
+/// Daylight from a lamp through a yellow filter, part of which goes beside the sensor: noise of places and of wavelengths.
+#[test]
+fn errors_of_coloured_light_are_calibrated() {
+    let text = r#"
+[finishes.yellow.specular]
+reflectance = 0
+transmittance = { by_nm = [[400, 0.0], [480, 0.1], [560, 0.8], [700, 0.9]] }
+[sheets.filter.disk]
+radius_mm = 4
+finish = "yellow"
+at = { position_mm = [0, 0, 1] }
+[sources.lamp.disk]
+radius_mm = 2
+flux_lm = 10
+spectrum = "cie_d65"
+[sensors]
+beyond = { plane = { disk = { radius_mm = 2 } }, at = { position_mm = [0.5, 0, 3], axis = [0, 0, -1] } }
+"#;
+    // Its errors are far smaller than those of a single wave.
+    let truth = measures_of_paths(text, Way::Forward, 4_000_000).values;
+    let job = load(text, Way::Forward);
+    let runs: Vec<Vec<f64>> = (1..=SEEDS)
+        .into_par_iter()
+        .map(|seed| {
+            let mut run = Run::new(&job.scene, &RunPlan { seed, ..job.run.clone() });
+            run.next_wave();
+            let found = measure::measure(&job.scene, &run.findings()).values;
+            let sigmas = |name: &&str| {
+                let [own, truth] = [&found[*name], &truth[*name]];
+                (own.value - truth.value) / own.std_error.hypot(truth.std_error)
+            };
+            MEASURES.iter().map(sigmas).collect()
+        })
+        .collect();
+    for (place, name) in MEASURES.iter().enumerate() {
+        // Of t with 127 degrees of freedom.
+        assert_calibrated(name, 127.0 / 125.0, |seed| runs[seed as usize - 1][place]);
+    }
+}
+
+/// What is judged: a sum, and two ratios.
+const MEASURES: [&str; 3] = ["beyond.flux", "beyond.colour_x", "beyond.colour_y"];

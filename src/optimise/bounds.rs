@@ -218,11 +218,23 @@ fn aside(field: &ElementField) -> f64 {
     repeats.into_iter().flatten().fold(shift, |least, by| least.min((by - shift).abs()))
 }
 
-/// All elements of a pattern or a relief, in the coordinates of the unrolled face, and their form.
-pub(crate) fn elements(scene: &Scene, name: &str) -> (Vec<FoundElement>, ElementShape, [f64; 2]) {
+/// An unrolled face with its elements.
+pub(crate) struct FoundFace {
+    pub(crate) elements: Vec<FoundElement>,
+    /// The form of the elements.
+    pub(crate) shape: ElementShape,
+    /// Width and length, mm.
+    pub(crate) size_mm: [f64; 2],
+    /// Whether it goes once around.
+    pub(crate) is_round: bool,
+}
+
+/// The unrolled face of a pattern or a relief.
+pub(crate) fn unrolled(scene: &Scene, name: &str) -> FoundFace {
     let found = field(scene, name).and_then(|own| Some((own.0, scene.face_rect(own.1)?)));
     let Some((field, rect)) = found else {
-        return (Vec::new(), ElementShape::Relief, [0.0, 0.0]);
+        let (shape, size_mm) = (ElementShape::Relief, [0.0, 0.0]);
+        return FoundFace { elements: Vec::new(), shape, size_mm, is_round: false };
     };
     let (shape, height): (ElementShape, Box<dyn Fn(f64) -> f64 + '_>) = match &field.outline {
         ElementOutline::Circle { .. } => (ElementShape::Circle, Box::new(|_| 0.0)),
@@ -247,7 +259,12 @@ pub(crate) fn elements(scene: &Scene, name: &str) -> (Vec<FoundElement>, Element
             height_mm: rounded(height(place)),
         }
     });
-    (list.collect(), shape, size.to_array())
+    FoundFace {
+        elements: list.collect(),
+        shape,
+        size_mm: size.to_array(),
+        is_round: field.period.is_some(),
+    }
 }
 
 #[cfg(test)]

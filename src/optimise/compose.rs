@@ -1,6 +1,6 @@
 //! From what was found to the record of the report and to the scene that is ready to run.
 
-use crate::optimise::bounds::elements;
+use crate::optimise::bounds::{FoundFace, unrolled};
 use crate::optimise::law::SizeLaw;
 use crate::optimise::measure::Measurements;
 use crate::optimise::search::SearchEnd;
@@ -33,7 +33,8 @@ pub(crate) fn report(
     let line = setting.map(|setting| format!("{}={setting}", feedback.key));
     let design = load(&study.scene, &study.common.with(line))?;
     measurements.expect_unchanged(&design)?;
-    let (elements, shape, face_mm) = elements(&design.scene, &feedback.pattern);
+    let FoundFace { elements, shape, size_mm, is_round } =
+        unrolled(&design.scene, &feedback.pattern);
     let sensor = &study.base.scene.sensors[feedback.sensor.index()];
     let (quantity, unit) = quantity(sensor, study.base.scene.unit);
     Ok(OptimisationReport {
@@ -59,7 +60,8 @@ pub(crate) fn report(
         active_limits: end.active_limits,
         ending: end.ending,
         shape,
-        face_mm,
+        face_mm: size_mm,
+        is_round,
         elements,
     })
 }

@@ -236,6 +236,9 @@ pub struct OptimisationReport {
     pub shape: ElementShape,
     /// Width and length of the face, mm.
     pub face_mm: [f64; 2],
+    /// Whether the face goes once around, so that its left and its right edge are one line: the seam.
+    #[serde(skip)]
+    pub is_round: bool,
     /// The elements of the best design.
     #[serde(skip)]
     pub elements: Vec<FoundElement>,
